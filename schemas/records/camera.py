@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the camera gives: images, calibration, and truth where there is some."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True)
+class Image:
+    """One image. `pixels` is uint8, (H, W) grey or (H, W, 3) blue-green-red."""
+
+    timestamp_ns: int
+    pixels: npt.NDArray[np.uint8]
+    frame_id: str = "camera"
+
+
+@dataclass(frozen=True)
+class DepthImage:
+    """Depth along the optical axis in metres, float32 (H, W); 0 where there is none."""
+
+    timestamp_ns: int
+    depth_m: npt.NDArray[np.float32]
+    frame_id: str = "camera"
+
+
+@dataclass(frozen=True)
+class CameraCalibration:
+    """A pinhole camera. `projection` (3, 4) is that of the rectified pair: for the right camera, [0, 3] is -fx * baseline_m."""
+
+    timestamp_ns: int
+    width: int
+    height: int
+    intrinsics: npt.NDArray[np.float64]
+    """(3, 3), px"""
+    distortion: tuple[float, ...] = ()
+    """k1, k2, p1, p2, k3 (OpenCV's plumb_bob); empty for a rectified image"""
+    projection: npt.NDArray[np.float64] | None = None
+    frame_id: str = "camera"
+
+
+@dataclass(frozen=True)
+class TruePose:
+    """Ground truth: where the camera really is."""
+
+    timestamp_ns: int
+    world_from_camera: npt.NDArray[np.float64]
+    """(4, 4), metres; the camera frame is optical (x right, y down, z forward)"""
+
+
+@dataclass(frozen=True)
+class TrueObject:
+    """The simulator's truth about one object in one image."""
+
+    instance_id: int
+    category: str
+    moving: bool
+    velocity_m_s: tuple[float, float, float]
+    position_m: tuple[float, float, float]
+    box_px: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class TrueInstances:
+    """The simulator's label image (uint32, (H, W), 0 = background) and its objects."""
+
+    timestamp_ns: int
+    labels: npt.NDArray[np.uint32]
+    objects: tuple[TrueObject, ...]
+
+
+@dataclass(frozen=True)
+class FrameManifest:
+    """What the camera sends under one timestamp; sent first, so that others know what to wait for."""
+
+    timestamp_ns: int
+    source: str
+    frame_name: str
+    topics: tuple[str, ...]
+    frame_count: int = -1
+    rate_hz: float = 10.0
+
+
+@dataclass(frozen=True)
+class EndOfInput:
+    """The input is over after `frame_count` frames."""
+
+    timestamp_ns: int
+    frame_count: int

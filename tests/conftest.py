@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fixtures of every test."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder of real recordings; the test skips where there is none."""
+    folder = Path(os.environ.get("KINEMAP_DATA", Path(__file__).resolve().parent.parent.parent / "shared" / "data"))
+    if not folder.is_dir():
+        pytest.skip(f"no recordings at {folder}; set KINEMAP_DATA to a folder that holds kitti/sequences/03")
+    return folder
