@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Text files of numbers (times, poses), read so that a mistake is named by file and line."""
+
+from decimal import Decimal, InvalidOperation
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from services.runtime.errors import InputError
+
+NS_PER_S = 1_000_000_000
+
+
+def read_lines(path: Path) -> list[tuple[int, str]]:
+    """The lines that hold something, each with its number from 1. Comments (#) are left out.
+
+    Raises:
+        InputError: the file cannot be read, or is not text.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not a text file") from error
+    lines = ((number, line.strip()) for number, line in enumerate(text.splitlines(), start=1))
+    return [(number, line) for number, line in lines if line and not line.startswith("#")]
+
+
+def parse_numbers(path: Path, line_number: int, text: str, count: int) -> list[float]:
+    """Exactly `count` finite numbers of one line.
+
+    Raises:
+        InputError: another count, or something that is no finite number; names file, line, found and expected.
+    """
+    words = text.split()
+    if len(words) != count:
+        raise InputError(f"{path} line {line_number}: {len(words)} numbers, expected {count}")
+    numbers = []
+    for word in words:
+        try:
+            numbers.append(float(word))
+        except ValueError as error:
+            raise InputError(f"{path} line {line_number}: {word!r} is not a number") from error
+        if not np.isfinite(numbers[-1]):
+            raise InputError(f"{path} line {line_number}: {word!r}, expected a finite number")
+    return numbers
+
+
+def read_times_ns(path: Path, frames: int) -> list[int]:
+    """The first `frames` times of a file with one time in seconds a line, in nanoseconds, exact to the decimal.
+
+    Raises:
+        InputError: fewer times than frames, no number, a negative one, or times that do not increase.
+    """
+    times_ns = []
+    for line_number, line in read_lines(path):
+        try:
+            time_s = Decimal(line)
+            times_ns.append(int((time_s * NS_PER_S).to_integral_value()))
+        except (InvalidOperation, ValueError, OverflowError) as error:
+            raise InputError(f"{path} line {line_number}: {line!r}, expected one time in seconds") from error
+        if times_ns[-1] < 0 or (len(times_ns) > 1 and times_ns[-1] <= times_ns[-2]):
+            raise InputError(f"{path} line {line_number}: time {line} s, expected times that increase from 0")
+        if len(times_ns) == frames:
+            break
+    if len(times_ns) < frames:
+        raise InputError(f"{path}: {len(times_ns)} times, expected {frames}, one for every image")
+    return times_ns
+
+
+def even_times_ns(frames: int, rate_hz: float) -> list[int]:
+    """Times of frames at an even rate, starting at 0."""
+    return [round(index * NS_PER_S / rate_hz) for index in range(frames)]
+
+
+def rate_of(times_ns: list[int], otherwise_hz: float) -> float:
+    """The median rate in Hz of increasing times; `otherwise_hz` where there is one frame only."""
+    steps_ns = [later - earlier for earlier, later in pairwise(times_ns)]
+    return NS_PER_S / float(np.median(steps_ns)) if steps_ns else otherwise_hz
+
+
+def read_kitti_poses(path: Path, frames: int) -> npt.NDArray[np.float64]:
+    """(frames, 4, 4) world_from_camera of KITTI's odometry format: 12 numbers a line, [R | t] by rows, metres.
+
+    Raises:
+        InputError: fewer poses than frames, or a line that is not 12 finite numbers.
+    """
+    lines = read_lines(path)
+    if len(lines) < frames:
+        raise InputError(f"{path}: {len(lines)} poses, expected {frames}, one for every image")
+    poses = np.tile(np.eye(4), (frames, 1, 1))
+    for pose, (line_number, line) in zip(poses, lines, strict=False):
+        pose[:3] = np.reshape(parse_numbers(path, line_number, line, 12), (3, 4))
+    return poses
