@@ -41,7 +41,9 @@ def labels_to_array(message: LabelImage) -> npt.NDArray[np.uint32]:
     lengths = np.array(message.lengths, dtype=np.int64)
     pixels = message.width * message.height
     if pixels > MAX_PIXELS:
-        raise ValueError(f"label image of {message.width}x{message.height} pixels, expected at most {MAX_PIXELS} pixels")
+        raise ValueError(
+            f"label image of {message.width}x{message.height} pixels, expected at most {MAX_PIXELS} pixels"
+        )
     if values.size != lengths.size or lengths.sum() != pixels:
         raise ValueError(
             f"label image runs cover {int(lengths.sum())} pixels with {values.size} values for {lengths.size} runs, "

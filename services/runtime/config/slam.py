@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The SLAM engine's options that a user sets."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class SlamConfig(BaseModel):
+    """Everything else keeps the engine's defaults."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    stage: Literal["base", "dynamic", "moving"] = Field(
+        "moving",
+        description="what stays out of tracking: nothing (base), every potentially dynamic object (dynamic), "
+        "only what moves (moving)",
+    )
+    features: int = Field(2000, ge=100, le=20000, description="ORB features an image")
+    pyramid_levels: int = Field(8, ge=1, le=16, description="levels of the image pyramid")
+    pyramid_factor: float = Field(1.2, gt=1.0, le=2.0, description="scale between two levels")
+    seed: int = Field(1, ge=0, description="seed of every random sample")
+    merge_delay_frames: int = Field(2, ge=1, le=20, description="frames between a keyframe and its bundle adjustment")
+    use_depth: bool = Field(
+        True, description="place moving points, and set the scale, by the depth image if there is one"
+    )
