@@ -27,7 +27,7 @@ class DepthImage:
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """A pinhole camera. `projection` (3, 4) is that of the rectified pair: for the right camera, [0, 3] is -fx * baseline_m."""
+    """A pinhole camera."""
 
     timestamp_ns: int
     width: int
@@ -37,6 +37,7 @@ class CameraCalibration:
     distortion: tuple[float, ...] = ()
     """k1, k2, p1, p2, k3 (OpenCV's plumb_bob); empty for a rectified image"""
     projection: npt.NDArray[np.float64] | None = None
+    """(3, 4) of the rectified pair; for the right camera, [0, 3] is -fx * baseline_m"""
     frame_id: str = "camera"
 
 

@@ -9,7 +9,7 @@ from services.runtime.bus import Message
 
 
 class InboundQueue:
-    """First in, first out. With `keep_all` false, a topic that drops its oldest keeps its `queue_depth` newest messages."""
+    """First in, first out. With `keep_all` false, a topic that drops its oldest keeps `queue_depth` messages."""
 
     def __init__(self, *, keep_all: bool) -> None:
         self._keep_all = keep_all

@@ -27,7 +27,7 @@ class Sent(NamedTuple):
 
 
 class Outbox:
-    """The answers to the last `depth` frames by sequence number; with `folder`, on disk too, together with the state."""
+    """What was sent for the last `depth` frames; with `folder`, on disk too, together with the state."""
 
     def __init__(self, depth: int, folder: Path | None) -> None:
         self._depth = depth

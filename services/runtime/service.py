@@ -62,7 +62,7 @@ class FrameService(ABC):
         """All state over frames as arrays, or None for a service that has none."""
         return None
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: State) -> None:  # noqa: B027 - a service without state has nothing to do
         """Take up the state of a predecessor that was killed."""
 
     def last_sequence(self) -> int | None:
@@ -73,5 +73,5 @@ class FrameService(ABC):
         """Numbers for the heartbeat."""
         return {}
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 - nor has one without files and threads
         """Let go of files and threads."""
