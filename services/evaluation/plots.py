@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a run, as PNG files. Drawn with Agg: no display is needed."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from schemas.records import Density, DensityLevel, MotionState
+from services.evaluation.ground_plane import GroundPlane, ground_plane
+from services.evaluation.map_points import Points
+from services.evaluation.trajectory import Trajectory
+from services.evaluation.trajectory_error import TrajectoryError
+
+STATE_COLOURS: dict[MotionState, str] = {
+    MotionState.STATIC: "#2e8b57",
+    MotionState.NON_MOVING: "#e0a800",
+    MotionState.UNDECIDED: "#e0a800",
+    MotionState.POTENTIALLY_DYNAMIC: "#e0a800",
+    MotionState.MOVING: "#d62728",
+}
+"""Green: background; yellow: an object that stands or may move; red: moving."""
+
+_LEVEL_COLOURS = {DensityLevel.UNKNOWN: "#999999", DensityLevel.LOW: "#2e8b57", DensityLevel.HIGH: "#d62728"}
+
+# Points far outside the path (a badly triangulated one can be kilometres away) would shrink the street to a dot.
+_MARGIN = 0.25
+_LEAST_MARGIN = 15.0
+
+
+def plot_trajectory(
+    estimate: Trajectory, path: Path, truth: Trajectory | None = None, error: TrajectoryError | None = None
+) -> None:
+    """Top view of the estimate, brought onto the truth where there is one."""
+    figure = _figure()
+    axes = figure.add_subplot()
+    poses = estimate.world_from_camera if error is None else error.truth_from_estimate.poses(estimate.world_from_camera)
+    plane = ground_plane(truth.world_from_camera if truth is not None else poses)
+    unit = "m" if error is not None else "map units"
+    if truth is not None:
+        axes.plot(*plane.project(truth.positions_m).T, color="black", linewidth=2.5, label="ground truth", zorder=1)
+    estimated = plane.project(poses[:, :3, 3])
+    axes.plot(*estimated.T, color="#1f77b4", linewidth=1.2, label="kinemap", zorder=2)
+    axes.plot(*estimated[0], marker="o", color="#1f77b4", label="start", linestyle="none", zorder=3)
+    if error is None:
+        axes.set_title("trajectory" if truth is None else "trajectory (could not be aligned to the ground truth)")
+    else:
+        covered = f"{error.coverage:.1%} of {error.frames} frames"
+        axes.set_title(f"ATE RMSE {error.absolute_m.rmse:.3f} m ({error.alignment.value}), {covered}")
+    _finish_top_view(axes, plane, unit)
+    _save(figure, path)
+
+
+def plot_map(points: Points, trajectory: Trajectory | None, path: Path, unit: str = "map units") -> None:
+    """Top view of the map in green, yellow and red, with the camera's path."""
+    figure = _figure()
+    axes = figure.add_subplot()
+    plane = ground_plane(trajectory.world_from_camera if trajectory is not None else np.eye(4)[None])
+    projected = plane.project(points.position)
+    for state, colour, label in (
+        ((MotionState.STATIC,), STATE_COLOURS[MotionState.STATIC], "static"),
+        (
+            (MotionState.NON_MOVING, MotionState.UNDECIDED, MotionState.POTENTIALLY_DYNAMIC),
+            STATE_COLOURS[MotionState.NON_MOVING],
+            "standing or undecided",
+        ),
+        ((MotionState.MOVING,), STATE_COLOURS[MotionState.MOVING], "moving"),
+    ):
+        chosen = np.isin(points.state, state)
+        axes.scatter(
+            projected[chosen, 0],
+            projected[chosen, 1],
+            s=2,
+            color=colour,
+            linewidths=0,
+            label=f"{label} ({int(chosen.sum())})",
+        )
+    if trajectory is not None:
+        path_in_plane = plane.project(trajectory.positions_m)
+        axes.plot(*path_in_plane.T, color="black", linewidth=1.2, label="camera")
+        _limit_to(axes, path_in_plane)
+    axes.set_title(f"map: {len(points.landmark_id)} landmarks")
+    _finish_top_view(axes, plane, unit)
+    _save(figure, path)
+
+
+def plot_stage_times(stage_ms: Mapping[str, Mapping[str, float]], path: Path) -> None:
+    """Milliseconds a frame of every stage: the bar is the median, the line reaches to p95."""
+    figure = _figure(height_in=1.2 + 0.32 * max(len(stage_ms), 1))
+    axes = figure.add_subplot()
+    names = list(stage_ms)
+    medians = np.array([stage_ms[name]["p50"] for name in names])
+    tails = np.array([stage_ms[name]["p95"] for name in names]) - medians
+    if names:
+        tails = np.vstack((np.zeros(len(names)), tails.clip(0)))
+        axes.barh(names, medians, color="#1f77b4", xerr=tails, ecolor="#555555")
+    axes.invert_yaxis()
+    axes.set_xlabel("ms a frame (median, line to p95)")
+    axes.set_title("time of every stage")
+    _save(figure, path)
+
+
+def plot_density(densities: Mapping[int, Density], path: Path) -> None:
+    """Moving points around the camera over the frames, coloured by level."""
+    figure = _figure(height_in=3.6)
+    axes = figure.add_subplot()
+    frames = np.array(sorted(densities), dtype=np.int64)
+    points = np.array([densities[frame].moving_points for frame in frames.tolist()])
+    levels = np.array([densities[frame].level for frame in frames.tolist()])
+    for level, colour in _LEVEL_COLOURS.items():
+        chosen = levels == level
+        axes.bar(frames[chosen], points[chosen], width=1.0, color=colour)
+        axes.scatter([], [], marker="s", color=colour, label=f"{level.name.lower()} ({int(chosen.sum())} frames)")
+        axes.scatter(
+            frames[chosen],
+            np.full(int(chosen.sum()), -0.02),
+            s=6,
+            marker="s",
+            color=colour,
+            clip_on=False,
+            transform=axes.get_xaxis_transform(),
+        )
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("frame")
+    axes.set_ylabel("moving points around the camera")
+    axes.set_title("density")
+    axes.legend(loc="upper left", fontsize=8)
+    _save(figure, path)
+
+
+def _figure(height_in: float = 7.0) -> Figure:
+    figure = Figure(figsize=(9.0, height_in), dpi=130, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _limit_to(axes: Axes, path_in_plane: npt.NDArray[np.float64]) -> None:
+    low, high = path_in_plane.min(axis=0), path_in_plane.max(axis=0)
+    extent = float((high - low).max())
+    margin = max(_MARGIN * extent, _LEAST_MARGIN if extent > _LEAST_MARGIN else extent)
+    if extent > 0.0:
+        axes.set_xlim(low[0] - margin, high[0] + margin)
+        axes.set_ylim(low[1] - margin, high[1] + margin)
+
+
+def _finish_top_view(axes: Axes, plane: GroundPlane, unit: str) -> None:
+    axes.set_aspect("equal", adjustable="datalim" if axes.get_autoscale_on() else "box")
+    axes.set_xlabel(f"{plane.names[0]} [{unit}]")
+    axes.set_ylabel(f"{plane.names[1]} [{unit}]")
+    axes.grid(visible=True, linewidth=0.3)
+    axes.legend(loc="best", fontsize=8, markerscale=2)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    with mpl.rc_context({"svg.hashsalt": "kinemap"}):
+        figure.savefig(path, metadata={"Software": None})

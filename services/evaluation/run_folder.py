@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run leaves in its folder, evaluated: `report.json`, `ground_truth.tum` and `plots/`."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from services.evaluation.alignment import Alignment
+from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
+from services.evaluation.report import Report, RunOutcome, ServiceUsage, build_report, stage_times, write_report
+from services.evaluation.session_log import SessionLog
+from services.evaluation.session_reading import read_session
+from services.evaluation.trajectory import Trajectory
+from services.evaluation.trajectory_error import TrajectoryError, trajectory_error
+from services.evaluation.trajectory_files import read_trajectory, write_tum
+from services.runtime.errors import InputError
+
+SESSION_NAME = "session.mcap"
+TRAJECTORY_NAME = "trajectory.tum"
+REPORT_NAME = "report.json"
+
+
+def evaluate_run(
+    folder: Path,
+    outcome: RunOutcome,
+    services: Mapping[str, ServiceUsage],
+    *,
+    recover: bool = False,
+) -> Report:
+    """Evaluate the run in `folder` from its session.mcap and trajectory.tum; what is found is written there too.
+
+    Raises InputError where the folder holds no session.
+    """
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder, expected one that `kinemap run` wrote")
+    _, log = read_session(folder / SESSION_NAME, recover=recover)
+    trajectory = _exported_trajectory(folder)
+    report = build_report(log, trajectory, services, outcome)
+    write_report(report, folder / REPORT_NAME)
+    _draw(folder, log, trajectory, report, services)
+    return report
+
+
+def _exported_trajectory(folder: Path) -> Trajectory | None:
+    path = folder / TRAJECTORY_NAME
+    # A run that never initialised exports a file without rows: that is a result, not bad input.
+    if not path.is_file() or path.stat().st_size == 0:
+        return None
+    return read_trajectory(path)
+
+
+def _draw(
+    folder: Path, log: SessionLog, trajectory: Trajectory | None, report: Report, services: Mapping[str, ServiceUsage]
+) -> None:
+    plots = folder / "plots"
+    plots.mkdir(exist_ok=True)
+    truth = log.truth()
+    if truth is not None:
+        write_tum(truth, folder / "ground_truth.tum")
+    if trajectory is not None:
+        error = _error(trajectory, truth, report)
+        plot_trajectory(trajectory, plots / "trajectory.png", truth, error)
+    unit = "m" if report["scale"] == "metric" else "map units"
+    map_points = log.map_points
+    plot_map(map_points.points(map_points.largest_map_id()), trajectory, plots / "map.png", unit)
+    plot_stage_times(stage_times(log, services), plots / "stage_times.png")
+    plot_density(log.densities, plots / "density.png")
+
+
+def _error(trajectory: Trajectory, truth: Trajectory | None, report: Report) -> TrajectoryError | None:
+    if truth is None:
+        return None
+    try:
+        return trajectory_error(trajectory, truth, Alignment.SIM3, frames=report["frames"]["in"])
+    except InputError:
+        return None  # the report already says why under `ate`
