@@ -25,7 +25,7 @@ def is_kitti_folder(folder: Path) -> bool:
 
 
 class KittiOdometry:
-    """image_0 or image_2 (left), image_1 or image_3 (right), calib.txt, times.txt and the poses as far as they are there.
+    """image_0 or image_2 (left), image_1 or image_3 (right), calib.txt, times.txt and poses as far as they are there.
 
     Poses are looked for as poses.txt in the folder and as ../../poses/<folder's name>.txt; their world is the first
     pose of camera 0 (x right, y down, z forward), and they are given for the camera whose images are used.

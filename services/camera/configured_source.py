@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The source that the configuration asks for."""
+
+from services.camera.sources.detect import SourceOptions, open_source
+from services.camera.sources.source import Source
+from services.runtime.config import Config
+from services.simulator.options import StreetOptions
+
+
+def open_configured_source(config: Config) -> Source:
+    """Open `config.camera.input`; cheap, so that a run with an input that cannot be used fails before it begins.
+
+    Raises:
+        InputError: the input, or a file of it, cannot be used.
+    """
+    return open_source(
+        config.camera.input,
+        SourceOptions(**config.camera.model_dump(exclude={"input"})),
+        StreetOptions(**config.simulator.model_dump()),
+    )

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The segmenter service: an image in, its potentially dynamic instances out."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import cv2
+
+from schemas import topics
+from schemas.topics import Topic
+from services.runtime.config import Config
+from services.runtime.host import run_service
+from services.runtime.log import get_logger
+from services.runtime.service import Bundle, FrameService, Outgoing
+from services.segmenter.backend import FrameContext, InstanceBackend, InstanceFilter
+from services.segmenter.label_images import LabelImages
+from services.segmenter.no_instances import NoInstances
+from services.segmenter.truth import TrueLabels
+
+NAME = "segmenter"
+_FOLDER = "instances"
+
+
+def choose_backend(config: Config) -> InstanceBackend:
+    """The backend that the configuration names; `auto` looks for label images first, then takes the frames' truth.
+
+    Raises:
+        InputError: the folder of label images is missing or cannot be used.
+    """
+    settings = config.segmenter
+    chosen = InstanceFilter(frozenset(settings.categories), settings.min_score)
+    folder = settings.instances or Path(config.camera.input) / _FOLDER
+    if settings.backend == "masks" or (settings.backend == "auto" and (settings.instances or folder.is_dir())):
+        return LabelImages(folder, chosen)
+    return NoInstances() if settings.backend == "none" else TrueLabels(chosen)
+
+
+class SegmenterService(FrameService):
+    """Has no memory: every frame is its own, so a repeated one gives the same bytes again."""
+
+    name: ClassVar[str] = NAME
+    awaits: ClassVar[tuple[Topic, ...]] = (topics.IMAGE, topics.TRUE_INSTANCES)
+
+    def __init__(self, config: Config) -> None:
+        self._backend = choose_backend(config)
+        self._log = get_logger(NAME)
+        self._log.info("backend", name=type(self._backend).__name__)
+
+    def process(self, bundle: Bundle) -> list[Outgoing]:
+        """Segment one image."""
+        context = FrameContext(bundle[topics.MANIFEST].frame_name, bundle.get(topics.TRUE_INSTANCES))
+        instances = self._backend.segment(bundle[topics.IMAGE], context)
+        if instances.skipped:
+            self._log.warning_limited("frame_skipped", frame=context.frame_name, sequence=bundle.envelope.sequence)
+        return [Outgoing(topics.INSTANCES, instances)]
+
+    def metrics(self) -> dict[str, float]:
+        """How many frames had no masks."""
+        return {"frames_without_masks": float(self._backend.missing_frames)}
+
+
+def create(config: Config) -> SegmenterService:
+    """The service as configured."""
+    # What a broken image is like is said once, in our own line.
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    return SegmenterService(config)
+
+
+if __name__ == "__main__":
+    run_service(create, NAME)
