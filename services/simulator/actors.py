@@ -21,6 +21,23 @@ _HALF_STEP_M = 0.15
 
 
 @dataclass(frozen=True, slots=True)
+class ActorState:
+    """An actor at one time, in the world frame.
+
+    world_from_object: 4x4, on the ground. centre_m: (3,), middle of the cuboid. velocity_m_s: (3,), along the ground;
+    climbing kerbs is not counted. walked_m: way gone. present: whether the street reaches to where it is.
+    """
+
+    world_from_object: Floats
+    centre_m: Floats
+    heading_rad: float
+    velocity_m_s: Floats
+    moving: bool
+    walked_m: float
+    present: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Actor:
     """A car or a person with an identity that lasts over the drive.
 
@@ -43,53 +60,32 @@ class Actor:
         """Whether it never moves during the drive."""
         return self.speed.always_still
 
-    def present(self, t_s: Floats | float) -> NDArray[np.bool_]:
-        """Whether the street reaches to where it is."""
-        return self.path.inside(self.speed.distance_m(t_s))
-
-    def heading_rad(self, t_s: Floats | float) -> Floats:
-        """Direction it faces against world x."""
-        gone = self.speed.distance_m(t_s)
-        step = self.path.point(gone + _HALF_STEP_M) - self.path.point(gone - _HALF_STEP_M)
-        return np.arctan2(step[..., 1], step[..., 0])
-
-    def world_from_object(self, t_s: float) -> Floats:
-        """Pose at a time, 4x4."""
-        position = self.path.point(self.speed.distance_m(t_s))
-        pose = planar_pose(position[:2], float(self.heading_rad(t_s)))
-        pose[2, 3] = position[2]
-        return pose
-
-    def velocity_m_s(self, t_s: float) -> Floats:
-        """Velocity of its origin in the world frame, (3,): the profile's speed along the path; climbing kerbs is not
-        counted."""
+    def at(self, t_s: float) -> ActorState:
+        """Where it is and how it moves at a time (moving: at 0.1 m/s or more)."""
         gone = float(self.speed.distance_m(t_s))
-        step = self.path.point(gone + 1e-3) - self.path.point(gone - 1e-3)
+        speed = float(self.speed.speed_m_s(t_s))
+        behind, position, ahead = self.path.point(gone + np.array([-_HALF_STEP_M, 0.0, _HALF_STEP_M]))
+        step = ahead - behind
         step[2] = 0.0
-        return step / np.linalg.norm(step) * float(self.speed.speed_m_s(t_s))
+        heading = float(np.arctan2(step[1], step[0]))
+        pose = planar_pose(position[:2], heading)
+        pose[2, 3] = position[2]
+        centre = position + [0.0, 0.0, 0.5 * self.size_m[2]]
+        velocity = step * (speed / float(np.hypot(step[0], step[1])))
+        return ActorState(pose, centre, heading, velocity, speed >= MOVING_M_S, gone, bool(self.path.inside(gone)))
 
-    def moving(self, t_s: float) -> bool:
-        """Whether it moves at 0.1 m/s or more."""
-        return float(self.speed.speed_m_s(t_s)) >= MOVING_M_S
-
-    def centre_m(self, t_s: float) -> Floats:
-        """Middle of its cuboid in the world frame, (3,)."""
-        centre = self.path.point(self.speed.distance_m(t_s)).copy()
-        centre[2] += 0.5 * self.size_m[2]
-        return centre
-
-    def vertices_in_world(self, t_s: float) -> Floats:
-        """Its mesh's vertices at a time, (V, 3)."""
+    def vertices_in_world(self, state: ActorState) -> Floats:
+        """Its mesh's vertices, (V, 3), in a state of its own."""
         vertices = self.mesh.vertices
         if self.gait is not None and not self.always_still:
-            vertices = self.gait.swung(vertices, float(self.speed.distance_m(t_s)))
-        pose = self.world_from_object(t_s)
+            vertices = self.gait.swung(vertices, state.walked_m)
+        pose = state.world_from_object
         return vertices @ pose[:3, :3].T + pose[:3, 3]
 
     def disc_centres(self, t_s: Floats) -> Floats:
         """World (x, y) of its discs at several times, (T, discs, 2); far away where it is not present."""
-        position = self.path.point(self.speed.distance_m(t_s))[:, None, :2]
-        heading = self.heading_rad(t_s)
-        ahead = np.stack([np.cos(heading), np.sin(heading)], axis=-1)[:, None, :]
-        discs = position + np.array(self.disc_offsets_m)[None, :, None] * ahead
-        return np.where(self.present(t_s)[:, None, None], discs, 1e6)
+        gone = self.speed.distance_m(t_s)
+        step = self.path.point(gone + _HALF_STEP_M) - self.path.point(gone - _HALF_STEP_M)
+        ahead = step[:, None, :2] / np.hypot(step[:, 0], step[:, 1])[:, None, None]
+        discs = self.path.point(gone)[:, None, :2] + np.array(self.disc_offsets_m)[None, :, None] * ahead
+        return np.where(self.path.inside(gone)[:, None, None], discs, 1e6)

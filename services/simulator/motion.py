@@ -35,8 +35,8 @@ class SpeedProfile:
     def distance_m(self, t_s: Floats | float) -> Floats:
         """Way gone since the first knot (negative before it), exact."""
         t = np.asarray(t_s, np.float64)
-        inside = np.clip(t, self._t[0], self._t[-1])
-        k = np.clip(np.searchsorted(self._t, inside, side="right") - 1, 0, len(self._t) - 1)
+        inside = np.minimum(np.maximum(t, self._t[0]), self._t[-1])
+        k = np.searchsorted(self._t, inside, side="right") - 1
         since = inside - self._t[k]
         gone = self._way[k] + 0.5 * (self._v[k] + self.speed_m_s(inside)) * since
         return gone + np.minimum(t - self._t[0], 0.0) * self._v[0] + np.maximum(t - self._t[-1], 0.0) * self._v[-1]
@@ -67,7 +67,7 @@ class LanePath:
 
     def point(self, distance_m: Floats | float) -> Floats:
         gone = np.asarray(distance_m, np.float64)
-        x = np.clip(gone / self.merge_m, 0.0, 1.0)
+        x = np.minimum(np.maximum(gone / self.merge_m, 0.0), 1.0)
         n = self.n_from_m + (self.n_to_m - self.n_from_m) * x * x * (3.0 - 2.0 * x)
         s = self.s_m + self.direction * gone
         return np.concatenate([self.road.point(s, n), ground_height_m(self.road, s, n)[..., None]], axis=-1)
@@ -97,7 +97,6 @@ class AcrossPath:
 
 def ground_height_m(road: Road, s: Floats, n: Floats) -> Floats:
     """Height of the ground: the kerbs are walked up and down over 0.3 m, crossing streets lie low."""
-    up = np.clip((np.abs(n) - KERB_M) / _KERB_STEP_M + 0.5, 0.0, 1.0)
-    for junction in road.junctions_m:
-        up = np.minimum(up, np.clip((np.abs(s - junction) - CROSS_HALF_WIDTH_M) / _KERB_STEP_M + 0.5, 0.0, 1.0))
-    return KERB_HEIGHT_M * up
+    away = [(np.abs(n) - KERB_M)] + [np.abs(s - junction) - CROSS_HALF_WIDTH_M for junction in road.junctions_m]
+    up = np.min(away, axis=0) / _KERB_STEP_M + 0.5
+    return KERB_HEIGHT_M * np.minimum(np.maximum(up, 0.0), 1.0)  # type: ignore[no-any-return]

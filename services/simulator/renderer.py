@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +17,13 @@ from services.simulator.triangles import TriangleTable, joined
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
-_EDGE_OFFSETS_PX = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))
-_EDGE_COLUMNS = 64
+_EDGE_OFFSETS_PX = ((-0.34, -0.2), (0.34, 0.2))
+"""Where a pixel on an edge is looked at again, beside its centre."""
+_BOX_CORNERS = np.array([[bool(k & bit) for bit in (1, 2, 4)] for k in range(8)])
+_EDGE_COLUMNS = 128
 """Pixels on edges are shaded in rows of this many: cv2.remap takes no longer side than 32767."""
+_BAND_PX = 16384
+"""Pixels shaded at a time, so that intermediate results stay in the processor's cache."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,89 +36,134 @@ class Hits:
 
 @dataclass(frozen=True, slots=True)
 class RenderedView:
-    """image: BGR uint8 (H, W, 3). hits: (H, W). table: the triangles that `hits` counts."""
+    """image: BGR uint8 (H, W, 3). hits, instance: (H, W); instance 0 is nobody."""
 
     image: NDArray[np.uint8]
     hits: Hits
-    table: TriangleTable
+    instance: NDArray[np.int32]
 
 
-class StaticScene:
-    """What never moves: its triangles and the tree to cast rays against, built once."""
+class Surfaces:
+    """Triangles and the tree to cast rays against."""
 
     def __init__(self, table: TriangleTable, threads: int) -> None:
         self.table = table
-        self.rays = scene_of(table, threads)
-        self.threads = threads
-
-
-def scene_of(table: TriangleTable, threads: int) -> RayScene:
-    """Scene whose triangles are the table's rows."""
-    return RayScene(table.corner.reshape(-1, 3), np.arange(3 * len(table), dtype=np.int32).reshape(-1, 3), threads)
+        corners = np.arange(3 * len(table), dtype=np.int32).reshape(-1, 3)
+        self.rays = RayScene(table.corner.reshape(-1, 3), corners, threads)
 
 
 class Renderer:
-    """Renders a static scene and, in front of it, the triangles of the moment."""
+    """Renders static surfaces and, among them, those of the moment; triangles count on from the static ones."""
 
-    def __init__(self, camera: PinholeCamera, static: StaticScene, atlas: TextureAtlas) -> None:
+    def __init__(self, camera: PinholeCamera, static: Surfaces, atlas: TextureAtlas) -> None:
         self._camera, self._static = camera, static
         self._shader = Shader(atlas, atlas.index["clouds"])
         self._columns, self._rows = camera.pixel_grid()
+        self._x, self._y = camera.normalised(self._columns, self._rows)
 
-    def cast(self, world_from_camera: Floats, moving: TriangleTable | None) -> tuple[Hits, list[RayScene]]:
-        """Nearest surfaces of every pixel, and the scenes they were found in."""
-        scenes = [self._static.rays]
-        if moving is not None and len(moving):
-            scenes.append(scene_of(moving, self._static.threads))
-        x, y = self._camera.normalised(self._columns, self._rows)
-        return self._nearest(scenes, world_from_camera, x, y), scenes
+    def cast(self, world_from_camera: Floats, moving: Surfaces | None) -> Hits:
+        """Nearest surfaces of every pixel."""
+        return self._nearest(world_from_camera, moving, self._columns, self._rows)
 
-    def render(self, world_from_camera: Floats, moving: TriangleTable | None) -> RenderedView:
+    def render(self, world_from_camera: Floats, moving: Surfaces | None) -> RenderedView:
         """Image and surfaces seen from a pose; the image is the same whatever was rendered before."""
-        hits, scenes = self.cast(world_from_camera, moving)
-        static = self._static.table
-        table = static if moving is None else joined(static, moving)
-        x, y = self._camera.normalised(self._columns, self._rows)
-        edges = np.nonzero(_edges(table.part, hits.triangle))
-        edge_samples = []
-        for offset in _EDGE_OFFSETS_PX:
-            columns, rows = (_in_rows(grid[edges]) for grid in (self._columns, self._rows))
-            place = self._camera.normalised(columns + np.float32(offset[0]), rows + np.float32(offset[1]))
-            edge_samples.append((self._nearest(scenes, world_from_camera, *place), *place))
-        view, row_of = self._view(table, [hits, *(s[0] for s in edge_samples)], world_from_camera)
-        colour = self._shader.shade(view, row_of[hits.triangle], hits.depth_m, x, y)
-        if len(edges[0]):
-            mixed = sum(
-                self._shader.shade(view, row_of[h.triangle], h.depth_m, ex, ey) for h, ex, ey in edge_samples
-            ) / np.float32(len(edge_samples))
-            colour[edges] = mixed.reshape(-1, 3)[: len(edges[0])]
+        hits = self.cast(world_from_camera, moving)
+        tables = [self._static.table] + ([moving.table] if moving else [])
+        edge = np.nonzero(_edges(_per_triangle([table.part for table in tables], renumber=True), hits.triangle))
+        again = self._look_again(world_from_camera, moving, edge)
+        view, row_of = self._view(world_from_camera, tables, [hits, again[0]])
+        colour = self._shaded(view, row_of, hits, self._x, self._y)
+        if len(edge[0]):
+            more = self._shaded(view, row_of, *again).reshape(-1, 3)
+            more = more[: len(edge[0]) * len(_EDGE_OFFSETS_PX)].reshape(len(_EDGE_OFFSETS_PX), -1, 3)
+            colour[edge] = (colour[edge] + more.sum(axis=0)) / np.float32(len(_EDGE_OFFSETS_PX) + 1)
         image = np.clip(colour + np.float32(0.5), 0.0, 255.0).astype(np.uint8)
-        return RenderedView(image, hits, table)
+        instance = np.append(_per_triangle([table.instance for table in tables]), 0)[hits.triangle]
+        return RenderedView(image, hits, instance)
 
-    def _nearest(self, scenes: Sequence[RayScene], world_from_camera: Floats, x: Floats32, y: Floats32) -> Hits:
+    def _look_again(
+        self, world_from_camera: Floats, moving: Surfaces | None, edge: tuple[NDArray[np.intp], ...]
+    ) -> tuple[Hits, Floats32, Floats32]:
+        """Surfaces beside the centres of some pixels, in rows, and their normalised image coordinates."""
+        columns, rows = (
+            _in_rows(np.concatenate([grid[edge] + np.float32(offset[axis]) for offset in _EDGE_OFFSETS_PX]))
+            for axis, grid in enumerate((self._columns, self._rows))
+        )
+        return self._nearest(world_from_camera, moving, columns, rows), *self._camera.normalised(columns, rows)
+
+    def _nearest(
+        self, world_from_camera: Floats, moving: Surfaces | None, columns: Floats32, rows: Floats32
+    ) -> Hits:
+        x, y = (grid.ravel() for grid in self._camera.normalised(columns, rows))
         axes = world_from_camera[:3, :3].astype(np.float32)
-        flat = np.stack([x.ravel(), y.ravel(), np.ones(x.size, np.float32)], axis=1)
-        directions = flat @ axes.T
-        depth, triangle = scenes[0].cast(world_from_camera[:3, 3], directions)
-        for scene in scenes[1:]:
-            other_depth, other_triangle = scene.cast(world_from_camera[:3, 3], directions)
-            nearer = other_depth < depth
-            depth = np.where(nearer, other_depth, depth)
-            triangle = np.where(nearer, other_triangle + len(self._static.table), triangle)
-        return Hits(depth.reshape(x.shape), triangle.reshape(x.shape))
+        directions = np.empty((x.size, 3), np.float32)
+        for k in range(3):
+            directions[:, k] = axes[k, 0] * x + axes[k, 1] * y + axes[k, 2]
+        origin = world_from_camera[:3, 3]
+        depth, triangle = self._static.rays.cast(origin, directions)
+        if moving is not None:
+            covered = self._may_cover(moving.table, world_from_camera)
+            near = np.flatnonzero(covered[np.rint(rows).astype(np.intp), np.rint(columns).astype(np.intp)])
+            nearer_depth, nearer = moving.rays.cast(origin, directions[near])
+            closer = nearer_depth < depth[near]
+            depth[near[closer]] = nearer_depth[closer]
+            triangle[near[closer]] = nearer[closer] + len(self._static.table)
+        return Hits(depth.reshape(columns.shape), triangle.reshape(columns.shape))
+
+    def _may_cover(self, table: TriangleTable, world_from_camera: Floats) -> NDArray[np.bool_]:
+        """Pixels that an instance of the table may cover, (H, W), by the images of boxes round them."""
+        first = np.flatnonzero(np.diff(table.instance, prepend=-1))
+        low = np.minimum.reduceat(table.corner.min(axis=1), first)
+        high = np.maximum.reduceat(table.corner.max(axis=1), first)
+        corner = np.where(_BOX_CORNERS[None], high[:, None], low[:, None])
+        points = (corner - world_from_camera[:3, 3]) @ world_from_camera[:3, :3]
+        place = self._camera.project(points)
+        close = (points[..., 2] < 0.2).any(axis=1)
+        covered = np.zeros(self._columns.shape, bool)
+        for box, whole_image in zip(place, close, strict=True):
+            if whole_image:
+                covered[:] = True
+                break
+            left, top = np.maximum(np.floor(box.min(axis=0)) - 1.0, 0.0).astype(int)
+            right, bottom = np.maximum(np.ceil(box.max(axis=0)) + 2.0, 0.0).astype(int)
+            covered[top:bottom, left:right] = True
+        return covered
 
     def _view(
-        self, table: TriangleTable, hits: list[Hits], world_from_camera: Floats
+        self, world_from_camera: Floats, tables: list[TriangleTable], hits: list[Hits]
     ) -> tuple[ViewTriangles, NDArray[np.int32]]:
-        """Coefficients of the triangles seen, and the row of each triangle among them (last entry: sky)."""
-        seen = np.zeros(len(table) + 1, bool)
+        """Coefficients of the triangles seen, and each triangle's row among them; the last of both is the sky."""
+        split = len(tables[0])
+        total = sum(len(table) for table in tables)
+        seen = np.zeros(total + 1, bool)
         for hit in hits:
             seen[hit.triangle] = True
         seen[-1] = False
         rows = np.flatnonzero(seen)
-        row_of = np.full(len(table) + 1, -1, np.int32)
+        row_of = np.full(total + 1, len(rows), np.int32)
         row_of[rows] = np.arange(len(rows), dtype=np.int32)
-        return self._shader.view(table.take(rows), world_from_camera, self._camera.fx_px), row_of
+        table = tables[0].take(rows[rows < split])
+        if len(tables) > 1:
+            table = joined([table, tables[1].take(rows[rows >= split] - split)])
+        return self._shader.view(table, world_from_camera, self._camera.fx_px), row_of
+
+    def _shaded(
+        self, view: ViewTriangles, row_of: NDArray[np.int32], hits: Hits, x: Floats32, y: Floats32
+    ) -> Floats32:
+        """Colours, (N, M, 3), worked out band by band."""
+        height = max(1, _BAND_PX // x.shape[1])
+        bands = [np.s_[row : row + height] for row in range(0, len(x), height)]
+        shaded = [
+            self._shader.shade(view, row_of[hits.triangle[b]], hits.depth_m[b], x[b], y[b]) for b in bands
+        ]
+        return np.concatenate(shaded) if shaded else np.zeros((*x.shape, 3), np.float32)
+
+
+def _per_triangle(columns: list[NDArray[np.int32]], renumber: bool = False) -> NDArray[np.int32]:
+    """One column of both tables; `renumber` keeps the second one's numbers apart from the first one's."""
+    if len(columns) == 1:
+        return columns[0]
+    return np.concatenate([columns[0], columns[1] + (int(columns[0].max()) + 1 if renumber else 0)])
 
 
 def _edges(part: NDArray[np.int32], triangle: NDArray[np.int32]) -> NDArray[np.bool_]:

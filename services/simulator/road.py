@@ -57,6 +57,9 @@ class Road:
             start_m += length_m + 28.0
             side = -side
         self.junctions_m = [s for s in self.junctions_m if s < drive_length_m + 100.0]
+        self._bend_start_m = np.array([bend.start_m for bend in self.bends])
+        self._bend_length_m = np.array([bend.length_m for bend in self.bends])
+        self._bend_angle_rad = np.array([bend.angle_rad for bend in self.bends])
         self._s = np.arange(-BEHIND_M - _MARGIN_M, drive_length_m + AHEAD_M + _MARGIN_M, _STEP_M)
         middle = self.heading(self._s[:-1] + 0.5 * _STEP_M)
         x = np.concatenate([[0.0], np.cumsum(np.cos(middle) * _STEP_M)])
@@ -66,18 +69,16 @@ class Road:
 
     def heading(self, s: Floats | float) -> Floats:
         """Angle of the centre line against world x, radians, counter-clockwise."""
-        s = np.asarray(s, np.float64)
-        heading = np.zeros_like(s)
-        for bend in self.bends:
-            x = np.clip((s - bend.start_m) / bend.length_m, 0.0, 1.0)
-            heading += bend.angle_rad * (x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi))
-        return heading
+        x = (np.asarray(s, np.float64)[..., None] - self._bend_start_m) / self._bend_length_m
+        x = np.minimum(np.maximum(x, 0.0), 1.0)
+        turned = self._bend_angle_rad * (x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi))
+        return turned.sum(axis=-1)  # type: ignore[no-any-return]
 
     def point(self, s: Floats | float, n: Floats | float) -> Floats:
         """World (x, y) of road coordinates, shape (..., 2), metres; straight on beyond both ends."""
         s, n = np.broadcast_arrays(np.asarray(s, np.float64), np.asarray(n, np.float64))
         heading = self.heading(s)
-        inside = np.clip(s, self._s[0], self._s[-1])
+        inside = np.minimum(np.maximum(s, self._s[0]), self._s[-1])
         beyond = s - inside
         cos, sin = np.cos(heading), np.sin(heading)
         x = np.interp(inside, self._s, self._x) + beyond * cos - n * sin

@@ -32,12 +32,11 @@ class Shader:
     ) -> Floats32:
         """Colours BGR 0 to 255, (N, M, 3).
 
-        triangle: row in the view's table, -1 = sky; depth_m: along the optical axis; x, y: normalised image
+        triangle: row in the view's table, its length = sky; depth_m: along the optical axis; x, y: normalised image
         coordinates; all (N, M).
         """
-        sky = triangle < 0
-        # The table's last row stands for the sky.
-        column = view.columns[:, triangle]
+        column = np.take(view.columns, triangle, axis=1)
+        sky = triangle == view.columns.shape[1] - 1
         t = np.where(sky, np.float32(1.0), depth_m)
         ju = column[0] * x + column[1] * y + column[2]
         jv = column[3] * x + column[4] * y + column[5]

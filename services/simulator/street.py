@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
-from services.simulator.actors import Actor
+from services.simulator.actors import Actor, ActorState
 from services.simulator.camera import EgoTrajectory, PinholeCamera
 from services.simulator.flow import flow_between
 from services.simulator.frame import SimulatedFlow, SimulatedFrame, SimulatedInstance
 from services.simulator.library import paint_library
 from services.simulator.options import StreetOptions
-from services.simulator.renderer import Hits, Renderer, StaticScene
+from services.simulator.renderer import Renderer, Surfaces
 from services.simulator.road import Road
 from services.simulator.textures import TextureAtlas
 from services.simulator.traffic import TrafficPlanner
@@ -41,12 +41,10 @@ class Street:
         atlas = TextureAtlas(paint_library(self.options.seed))
         self.actors: list[Actor] = TrafficPlanner(self.options, self.road, self.ego, atlas.index).plan()
         mesh = build_world(self.road, self.options.seed, atlas.index)
-        table = table_of(mesh, mesh.vertices, np.zeros(len(mesh.triangles), np.int32))
-        for actor in self.actors:
-            if actor.always_still:
-                table = joined(table, _table_at(actor, 0.0))
-        self._renderer = Renderer(self.camera, StaticScene(table, self.options.threads), atlas)
-        self._static = table
+        world = table_of(mesh, mesh.vertices, np.zeros(len(mesh.triangles), np.int32))
+        parked = [_table_at(actor, actor.at(0.0)) for actor in self.actors if actor.always_still]
+        self._static = Surfaces(joined([world, *parked]), self.options.threads)
+        self._renderer = Renderer(self.camera, self._static, atlas)
 
     @property
     def frame_count(self) -> int:
@@ -69,10 +67,9 @@ class Street:
         """
         t_s = self._time_s(index)
         pose = self.ego.world_from_camera(t_s)
-        actors = self._moving_actors_near(pose, t_s)
-        view = self._renderer.render(pose, _tables_at(actors, t_s))
-        labels = np.append(view.table.instance, 0)[view.hits.triangle].astype(np.uint16)
+        view = self._renderer.render(pose, self._moving_surfaces(pose, t_s))
         depth = np.where(np.isfinite(view.hits.depth_m), view.hits.depth_m, np.float32(0.0))
+        labels = view.instance.astype(np.uint16)
         instances = self._visible(labels, t_s)
         return SimulatedFrame(index, self.timestamp_ns(index), view.image, depth, labels, instances, pose)
 
@@ -84,21 +81,17 @@ class Street:
         """
         t_s, next_t_s = self._time_s(index), self._time_s(index + 1)
         pose, next_pose = self.ego.world_from_camera(t_s), self.ego.world_from_camera(next_t_s)
-        actors = self._moving_actors_near(pose, t_s)
-        now, then = self._hits(index), self._hits(index + 1)
-        corners_now = self._static.corner
-        corners_then = corners_now
-        if actors:
-            corners_now, corners_then = (
-                np.concatenate([corners_now, *(a.vertices_in_world(t)[a.mesh.triangles] for a in actors)])
-                for t in (t_s, next_t_s)
-            )
+        now = self._renderer.cast(pose, self._moving_surfaces(pose, t_s))
+        then = self._renderer.cast(next_pose, self._moving_surfaces(next_pose, next_t_s))
+        corners_now, corners_then = (
+            np.concatenate([
+                self._static.table.corner,
+                *(actor.vertices_in_world(actor.at(t))[actor.mesh.triangles]
+                  for actor, _ in self._moving_actors_near(pose, t_s)),
+            ])
+            for t in (t_s, next_t_s)
+        )
         return flow_between(self.camera, now, then, pose, next_pose, corners_now, corners_then)
-
-    def _hits(self, index: int) -> Hits:
-        t_s = self._time_s(index)
-        pose = self.ego.world_from_camera(t_s)
-        return self._renderer.cast(pose, _tables_at(self._moving_actors_near(pose, t_s), t_s))[0]
 
     def _time_s(self, index: int) -> float:
         return self.options.timestamp_ns(self._checked(index)) * 1e-9
@@ -108,41 +101,44 @@ class Street:
             raise InputError(f"simulator frame {index}: expected 0 to {self.frame_count - 1}")
         return index
 
-    def _moving_actors_near(self, world_from_camera: NDArray[np.float64], t_s: float) -> list[Actor]:
+    def _moving_actors_near(
+        self, world_from_camera: NDArray[np.float64], t_s: float
+    ) -> list[tuple[Actor, ActorState]]:
         """Those that may be in sight and are not part of the static scene."""
-        origin, ahead = world_from_camera[:2, 3], world_from_camera[:2, 2]
         near = []
         for actor in self.actors:
-            if not actor.always_still and bool(actor.present(t_s)):
-                away = actor.centre_m(t_s)[:2] - origin
-                if np.hypot(*away) < _VIEW_RANGE_M and away @ ahead > -actor.size_m[0]:
-                    near.append(actor)
+            if not actor.always_still:
+                state = actor.at(t_s)
+                away = state.centre_m[:2] - world_from_camera[:2, 3]
+                ahead = float(away @ world_from_camera[:2, 2])
+                if state.present and ahead > -actor.size_m[0] and float(np.hypot(*away)) < _VIEW_RANGE_M:
+                    near.append((actor, state))
         return near
 
+    def _moving_surfaces(self, world_from_camera: NDArray[np.float64], t_s: float) -> Surfaces | None:
+        near = self._moving_actors_near(world_from_camera, t_s)
+        if not near:
+            return None
+        return Surfaces(joined([_table_at(actor, state) for actor, state in near]), self.options.threads)
+
     def _visible(self, labels: NDArray[np.uint16], t_s: float) -> list[SimulatedInstance]:
-        counts = np.bincount(labels.ravel(), minlength=len(self.actors) + 1)
+        """Everybody with at least one pixel, in order of their ids."""
+        rows, columns = np.nonzero(labels)
+        ids = labels[rows, columns]
         found = []
-        for actor in self.actors:
-            if not counts[actor.instance_id]:
-                continue
-            rows, columns = np.nonzero(labels == actor.instance_id)
-            x, y = int(columns.min()), int(rows.min())
-            box = (x, y, int(columns.max()) - x + 1, int(rows.max()) - y + 1)
+        for instance_id in np.unique(ids):
+            actor = self.actors[int(instance_id) - 1]
+            mine = ids == instance_id
+            x, y = int(columns[mine].min()), int(rows[mine].min())
+            box = (x, y, int(columns[mine].max()) - x + 1, int(rows[mine].max()) - y + 1)
+            state = actor.at(t_s)
             found.append(SimulatedInstance(
-                actor.instance_id, actor.category, actor.moving(t_s), actor.velocity_m_s(t_s), actor.centre_m(t_s),
-                float(actor.heading_rad(t_s)), actor.size_m, box, int(counts[actor.instance_id]),
+                actor.instance_id, actor.category, state.moving, state.velocity_m_s, state.centre_m,
+                state.heading_rad, actor.size_m, box, int(mine.sum()),
             ))
         return found
 
 
-def _table_at(actor: Actor, t_s: float) -> TriangleTable:
+def _table_at(actor: Actor, state: ActorState) -> TriangleTable:
     instance = np.full(len(actor.mesh.triangles), actor.instance_id, np.int32)
-    return table_of(actor.mesh, actor.vertices_in_world(t_s), instance)
-
-
-def _tables_at(actors: list[Actor], t_s: float) -> TriangleTable | None:
-    table = None
-    for actor in actors:
-        one = _table_at(actor, t_s)
-        table = one if table is None else joined(table, one)
-    return table
+    return table_of(actor.mesh, actor.vertices_in_world(state), instance)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from services.runtime.errors import InputError
 from services.simulator import people, vehicles
 from services.simulator.actors import MOVING_M_S, Actor
 from services.simulator.camera import EgoTrajectory
+from services.simulator.meshes import Mesh
 from services.simulator.motion import AcrossPath, LanePath, Path, SpeedProfile
 from services.simulator.options import StreetOptions
 from services.simulator.road import BAY_CENTRE_M, LANE_CENTRE_M, Road
@@ -25,6 +27,20 @@ _EMPTY_RADIUS_M = 31.0
 _EGO_DISCS_M = (-3.2, -1.8, -0.4, 1.0, 3.0, 5.0, 7.0)
 """Discs of the camera's car along its heading; the last three keep the way ahead of it free."""
 _EGO_RADIUS_M = 1.0
+
+
+Route = tuple[Path, SpeedProfile]
+
+
+class Looks(TypedDict):
+    """What an actor is, whatever its way."""
+
+    category: str
+    mesh: Mesh
+    size_m: tuple[float, float, float]
+    gait: people.Gait | None
+    disc_radius_m: float
+    disc_offsets_m: tuple[float, ...]
 
 
 class TrafficPlanner:
@@ -49,7 +65,7 @@ class TrafficPlanner:
             InputError: more of one kind than the street has room for.
         """
         options = self._options
-        kinds: list[tuple[str, Callable[[int], Actor]]] = [
+        kinds: list[tuple[str, Callable[[int], Route]]] = [
             ("leading_cars", self._leading_car),
             ("crossing_cars", self._crossing_car),
             ("starting_cars", self._starting_car),
@@ -61,16 +77,18 @@ class TrafficPlanner:
         ]
         for name, draw in kinds:
             wanted = int(getattr(options, name))
+            looks = self._person if name.endswith("people") else self._car
             for number in range(wanted):
-                if not self._admit(draw, number):
+                if not self._admit(draw, looks(len(self._actors) + 1), number):
                     raise InputError(
                         f"simulator {name}={wanted}: expected at most {number} on this street (seed {options.seed})"
                     )
         return self._actors
 
-    def _admit(self, draw: Callable[[int], Actor], number: int) -> bool:
+    def _admit(self, draw: Callable[[int], Route], looks: Looks, number: int) -> bool:
         for _ in range(_TRIES):
-            actor = draw(number)
+            path, speed = draw(number)
+            actor = Actor(len(self._actors) + 1, path=path, speed=speed, **looks)
             discs = actor.disc_centres(self._times)
             if self._keeps_start_empty(actor) and self._keeps_clear(discs, actor.disc_radius_m):
                 self._actors.append(actor)
@@ -103,30 +121,32 @@ class TrafficPlanner:
         ahead = step / np.linalg.norm(step, axis=1, keepdims=True)
         return position[:, None] + np.array(_EGO_DISCS_M)[None, :, None] * ahead[:, None]
 
-    def _car(self, path: Path, speed: SpeedProfile) -> Actor:
-        rng = self._rng
+    def _car(self, instance_id: int) -> Looks:
+        rng = np.random.default_rng([self._options.seed, 5, instance_id])
         style = vehicles.STYLES[int(rng.choice(3, p=[0.42, 0.42, 0.16]))]
         paint = vehicles.PAINTS[int(rng.integers(0, len(vehicles.PAINTS)))]
-        mesh = vehicles.car_mesh(style, paint, self._texture)
         half = 0.5 * style.size_m[0] - 0.75
-        return Actor(
-            len(self._actors) + 1, "car", mesh, style.size_m, path, speed, None, 1.05, (-half, 0.0, half)
+        return Looks(
+            category="car", mesh=vehicles.car_mesh(style, paint, self._texture), size_m=style.size_m, gait=None,
+            disc_radius_m=1.05, disc_offsets_m=(-half, 0.0, half),
         )
 
-    def _person(self, path: Path, speed: SpeedProfile) -> Actor:
-        rng = self._rng
+    def _person(self, instance_id: int) -> Looks:
+        rng = np.random.default_rng([self._options.seed, 5, instance_id])
         height = float(rng.uniform(1.58, 1.88))
         jacket = int(rng.integers(0, people.JACKET_COUNT))
         mesh, gait = people.person_mesh(jacket, height, self._texture, bool(rng.random() < 0.5))
         size = (people.PERSON_SIZE_M[0], people.PERSON_SIZE_M[1], height)
-        return Actor(len(self._actors) + 1, "person", mesh, size, path, speed, gait, 0.38, (0.0,))
+        return Looks(
+            category="person", mesh=mesh, size_m=size, gait=gait, disc_radius_m=0.38, disc_offsets_m=(0.0,)
+        )
 
     def _meeting(self) -> tuple[float, float]:
         """A place in the traffic's part of the street and the time the camera comes there."""
         s = float(self._rng.uniform(*self._zone_m))
         return s, self._ego.time_s(s)
 
-    def _leading_car(self, number: int) -> Actor:
+    def _leading_car(self, number: int) -> Route:
         """Ahead in the lane: slower until the camera has caught up with it, then as fast, then off and away."""
         cruise = self._options.speed_m_s
         slow = float(self._rng.uniform(0.5, 0.62)) * cruise
@@ -136,9 +156,9 @@ class TrafficPlanner:
         follow = float(self._rng.uniform(5.0, 8.0))
         away = [(caught + follow - number, 1.02 * cruise), (caught + follow + 5.0 - number, 1.7 * cruise)]
         speed = SpeedProfile([(0.0, slow), (max(1.0, caught - 1.5), slow), (caught + 1.0, 1.02 * cruise), *away])
-        return self._car(LanePath(self._road, s0, 1.0, -LANE_CENTRE_M, -LANE_CENTRE_M), speed)
+        return (LanePath(self._road, s0, 1.0, -LANE_CENTRE_M, -LANE_CENTRE_M), speed)
 
-    def _crossing_car(self, number: int) -> Actor:
+    def _crossing_car(self, number: int) -> Route:
         """Across a side street, before the camera gets there."""
         places = [s for s in self._road.junctions_m if s < self._road.length_m]
         s = places[number % len(places)] if places else self._road.length_m
@@ -148,9 +168,9 @@ class TrafficPlanner:
         start = -direction * 90.0
         arrival = (90.0 - LANE_CENTRE_M) / cruise
         speed = SpeedProfile([(passing - arrival, cruise), (passing, cruise)])
-        return self._car(AcrossPath(self._road, s + direction * LANE_CENTRE_M, start, direction), speed)
+        return (AcrossPath(self._road, s + direction * LANE_CENTRE_M, start, direction), speed)
 
-    def _starting_car(self, number: int) -> Actor:
+    def _starting_car(self, number: int) -> Route:
         """Parked, then off when the camera comes near; on the left it drives towards the camera."""
         s, _ = self._meeting()
         direction = 1.0 if number % 3 == 2 else -1.0
@@ -160,15 +180,15 @@ class TrafficPlanner:
         cruise = self._options.speed_m_s * float(self._rng.uniform(0.7, 1.0) if direction < 0 else 1.3)
         speed = SpeedProfile([(0.0, 0.0), (max(begin, 0.1), 0.0), (max(begin, 0.1) + cruise / 1.9, cruise)])
         side = -direction
-        return self._car(LanePath(self._road, s, direction, side * BAY_CENTRE_M, side * LANE_CENTRE_M), speed)
+        return (LanePath(self._road, s, direction, side * BAY_CENTRE_M, side * LANE_CENTRE_M), speed)
 
-    def _oncoming_car(self, number: int) -> Actor:
+    def _oncoming_car(self, number: int) -> Route:
         cruise = float(self._rng.uniform(5.5, 9.0))
         s, meeting = self._meeting()
         speed = SpeedProfile([(meeting, cruise), (meeting + 1.0, cruise)])
-        return self._car(LanePath(self._road, s, -1.0, LANE_CENTRE_M, LANE_CENTRE_M), speed)
+        return (LanePath(self._road, s, -1.0, LANE_CENTRE_M, LANE_CENTRE_M), speed)
 
-    def _parked_car(self, number: int) -> Actor:
+    def _parked_car(self, number: int) -> Route:
         """In a bay, preferably beside one that is already taken, so that rows grow."""
         rng = self._rng
         s = 6.0 * int(rng.integers(2, int((self._road.length_m + 60.0) / 6.0))) + float(rng.uniform(-0.2, 0.2))
@@ -176,9 +196,9 @@ class TrafficPlanner:
             s += 6.0
         direction = 1.0 if rng.random() < 0.5 else -1.0
         n = -direction * (BAY_CENTRE_M + float(rng.uniform(-0.08, 0.1)))
-        return self._car(LanePath(self._road, s, direction, n, n), SpeedProfile([(0.0, 0.0), (1.0, 0.0)]))
+        return (LanePath(self._road, s, direction, n, n), SpeedProfile([(0.0, 0.0), (1.0, 0.0)]))
 
-    def _walking_person(self, number: int) -> Actor:
+    def _walking_person(self, number: int) -> Route:
         """Along the pavement; every third one stops for a while."""
         rng = self._rng
         direction = 1.0 if rng.random() < 0.4 else -1.0
@@ -190,9 +210,9 @@ class TrafficPlanner:
         if number % 3 == 0:
             stop = meeting - float(rng.uniform(2.0, 5.0))
             knots = [(meeting - 30.0, pace), (stop, pace), (stop + 0.8, 0.0), (stop + 4.0, 0.0), (stop + 4.8, pace)]
-        return self._person(LanePath(self._road, s - direction * gone, direction, n, n), SpeedProfile(knots))
+        return (LanePath(self._road, s - direction * gone, direction, n, n), SpeedProfile(knots))
 
-    def _crossing_person(self, number: int) -> Actor:
+    def _crossing_person(self, number: int) -> Route:
         """Waits at the kerb, crosses before the camera, stands on the other side."""
         rng = self._rng
         s, _ = self._meeting()
@@ -202,14 +222,14 @@ class TrafficPlanner:
         start = self._ego.time_s(max(1.0, s - float(rng.uniform(16.0, 34.0)))) - to_lane / pace
         start = max(start, 0.5)
         knots = [(start, 0.0), (start + 0.6, pace), (start + way / pace, pace), (start + way / pace + 0.6, 0.0)]
-        return self._person(AcrossPath(self._road, s, -direction * 0.5 * way, direction), SpeedProfile(knots))
+        return (AcrossPath(self._road, s, -direction * 0.5 * way, direction), SpeedProfile(knots))
 
-    def _standing_person(self, number: int) -> Actor:
+    def _standing_person(self, number: int) -> Route:
         rng = self._rng
         s = float(rng.uniform(30.0, self._road.length_m + 20.0))
         n = (1.0 if rng.random() < 0.5 else -1.0) * float(rng.uniform(6.95, 7.8))
         turn = -1.0 if n > 0 else 1.0
         still = SpeedProfile([(0.0, 0.0), (1.0, 0.0)])
         if rng.random() < 0.5:
-            return self._person(AcrossPath(self._road, s, n, turn), still)
-        return self._person(LanePath(self._road, s, turn, n, n), still)
+            return (AcrossPath(self._road, s, n, turn), still)
+        return (LanePath(self._road, s, turn, n, n), still)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,9 +54,9 @@ def table_of(mesh: Mesh, vertices: Floats, instance: NDArray[np.int32]) -> Trian
     )
 
 
-def joined(first: TriangleTable, second: TriangleTable) -> TriangleTable:
-    """One table of two; the second one's parts are renumbered."""
-    columns = [np.concatenate([getattr(first, name), getattr(second, name)]) for name in TriangleTable.__slots__]
-    table = TriangleTable(*columns)
-    table.part[len(first) :] += int(first.part.max(initial=-1)) + 1
-    return table
+def joined(tables: Sequence[TriangleTable]) -> TriangleTable:
+    """One table of several; parts stay distinct."""
+    first_part = np.cumsum([0] + [int(table.part.max(initial=-1)) + 1 for table in tables])
+    columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in TriangleTable.__slots__}
+    columns["part"] = np.concatenate([t.part + o for t, o in zip(tables, first_part, strict=False)])
+    return TriangleTable(**columns)
