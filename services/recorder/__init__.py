@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every message of a session to disk, and back onto the bus."""
