@@ -14,25 +14,23 @@ from services.evaluation.trajectory_error import TrajectoryError, trajectory_err
 from services.evaluation.trajectory_files import read_trajectory, write_tum
 from services.runtime.errors import InputError
 
-SESSION_NAME = "session.mcap"
 TRAJECTORY_NAME = "trajectory.tum"
 REPORT_NAME = "report.json"
 
 
 def evaluate_run(
     folder: Path,
+    session: Path,
     outcome: RunOutcome,
     services: Mapping[str, ServiceUsage],
     *,
     recover: bool = False,
 ) -> Report:
-    """Evaluate the run in `folder` from its session.mcap and trajectory.tum; what is found is written there too.
+    """Evaluate a run from its recorded `session` and the trajectory.tum in `folder`; what is found goes there too.
 
-    Raises InputError where the folder holds no session.
+    Raises InputError where there is no such session, or it was cut off and is not to be recovered.
     """
-    if not folder.is_dir():
-        raise InputError(f"{folder}: no such folder, expected one that `kinemap run` wrote")
-    _, log = read_session(folder / SESSION_NAME, recover=recover)
+    _, log = read_session(session, recover=recover)
     trajectory = _exported_trajectory(folder)
     report = build_report(log, trajectory, services, outcome)
     write_report(report, folder / REPORT_NAME)
