@@ -14,13 +14,19 @@ from typing import BinaryIO
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
-from mcap.records import Channel, ChunkIndex, Footer, MessageIndex, Metadata, MetadataIndex, Schema
+from mcap.records import Channel, ChunkIndex, Footer, Metadata, MetadataIndex, Schema
 
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
 RECORD_HEAD_BYTES = _HEAD.size
 _CHUNK_HEAD = struct.Struct("<QQQII")
 """start time, end time, uncompressed size, uncompressed crc, length of the compression's name"""
+_MESSAGE_INDEX_HEAD = struct.Struct("<HI")
+"""channel, length of the entries of 16 bytes each"""
+# Comparing with an enumeration's members is slow, and a long session has a million records.
+_MESSAGE_INDEX = int(Opcode.MESSAGE_INDEX)
+_DATA_END = int(Opcode.DATA_END)
+_CHUNK_RECORDS = (int(Opcode.CHUNK), _MESSAGE_INDEX)
 _KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
 
 
@@ -72,7 +78,7 @@ def scan_session(stream: BinaryIO, size: int) -> ScannedSession:
             found.problem = f"cut off at byte {size}, inside a {name} that begins at byte {offset}"
             return found
         try:
-            in_data = in_data and opcode != Opcode.DATA_END
+            in_data = in_data and opcode != _DATA_END
             if in_data:
                 _take(found, stream, opcode, offset, length)
             elif opcode == Opcode.FOOTER:
@@ -86,7 +92,7 @@ def scan_session(stream: BinaryIO, size: int) -> ScannedSession:
         offset = end
         if in_data:
             found.whole_until = end
-            found.last_chunk_sealed = opcode not in (Opcode.CHUNK, Opcode.MESSAGE_INDEX)
+            found.last_chunk_sealed = opcode not in _CHUNK_RECORDS
         else:
             found.last_chunk_sealed = True
         stream.seek(end)
@@ -94,20 +100,23 @@ def scan_session(stream: BinaryIO, size: int) -> ScannedSession:
 
 def _take(found: ScannedSession, stream: BinaryIO, opcode: int, offset: int, length: int) -> None:
     """Take what one record of the data section tells; the stream stands at its content."""
+    if opcode == _MESSAGE_INDEX:
+        channel_id, entries_length = _MESSAGE_INDEX_HEAD.unpack(stream.read(_MESSAGE_INDEX_HEAD.size))
+        if _MESSAGE_INDEX_HEAD.size + entries_length != length:
+            raise ValueError("content and length differ")
+        if found.chunks:
+            chunk = found.chunks[-1]
+            chunk.message_index_offsets[channel_id] = offset
+            chunk.message_index_length += _HEAD.size + length
+        found.message_counts[channel_id] = found.message_counts.get(channel_id, 0) + entries_length // 16
+        return
     if opcode == Opcode.CHUNK:
         found.chunks.append(_chunk_index(stream.read(min(length, 512)), offset, length))
         return
-    if opcode not in (Opcode.MESSAGE_INDEX, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA):
+    if opcode not in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA):
         return
     content = ReadDataStream(BytesIO(stream.read(length)))
-    if opcode == Opcode.MESSAGE_INDEX:
-        index = MessageIndex.read(content)
-        if found.chunks:
-            chunk = found.chunks[-1]
-            chunk.message_index_offsets[index.channel_id] = offset
-            chunk.message_index_length += _HEAD.size + length
-        found.message_counts[index.channel_id] = found.message_counts.get(index.channel_id, 0) + len(index.records)
-    elif opcode == Opcode.SCHEMA:
+    if opcode == Opcode.SCHEMA:
         schema = Schema.read(content)
         found.schemas[schema.id] = schema
     elif opcode == Opcode.CHANNEL:
