@@ -11,6 +11,7 @@ import numpy.typing as npt
 from services.runtime.errors import InputError
 
 NS_PER_S = 1_000_000_000
+_LATEST_S = 2**63 // NS_PER_S
 
 
 def read_lines(path: Path) -> list[tuple[int, str]]:
@@ -59,11 +60,13 @@ def read_times_ns(path: Path, frames: int) -> list[int]:
     for line_number, line in read_lines(path):
         try:
             time_s = Decimal(line)
-            times_ns.append(int((time_s * NS_PER_S).to_integral_value()))
-        except (InvalidOperation, ValueError, OverflowError) as error:
+            in_range = 0 <= time_s < _LATEST_S
+        except InvalidOperation as error:
             raise InputError(f"{path} line {line_number}: {line!r}, expected one time in seconds") from error
-        if times_ns[-1] < 0 or (len(times_ns) > 1 and times_ns[-1] <= times_ns[-2]):
+        time_ns = int((time_s * NS_PER_S).to_integral_value()) if in_range else -1
+        if time_ns <= (times_ns[-1] if times_ns else -1):
             raise InputError(f"{path} line {line_number}: time {line} s, expected times that increase from 0")
+        times_ns.append(time_ns)
         if len(times_ns) == frames:
             break
     if len(times_ns) < frames:
