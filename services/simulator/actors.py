@@ -70,7 +70,7 @@ class Actor:
         heading = float(np.arctan2(step[1], step[0]))
         pose = planar_pose(position[:2], heading)
         pose[2, 3] = position[2]
-        centre = position + [0.0, 0.0, 0.5 * self.size_m[2]]
+        centre = position + np.array([0.0, 0.0, 0.5 * self.size_m[2]])
         velocity = step * (speed / float(np.hypot(step[0], step[1])))
         return ActorState(pose, centre, heading, velocity, speed >= MOVING_M_S, gone, bool(self.path.inside(gone)))
 

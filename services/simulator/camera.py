@@ -37,11 +37,13 @@ class PinholeCamera:
     @property
     def k(self) -> Floats:
         """Calibration matrix, 3x3."""
-        return np.array([
-            [self.fx_px, 0.0, 0.5 * (self.width - 1)],
-            [0.0, self.fx_px, 0.5 * (self.height - 1)],
-            [0.0, 0.0, 1.0],
-        ])
+        return np.array(
+            [
+                [self.fx_px, 0.0, 0.5 * (self.width - 1)],
+                [0.0, self.fx_px, 0.5 * (self.height - 1)],
+                [0.0, 0.0, 1.0],
+            ]
+        )
 
     def pixel_grid(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Column and row of every pixel, each (height, width)."""
@@ -59,7 +61,7 @@ class PinholeCamera:
         """(..., 3) metres in the camera frame to (..., 2) pixels; NaN at or behind the camera's plane."""
         z = np.where(points_in_camera[..., 2] > 1e-6, points_in_camera[..., 2], np.nan)
         k = self.k
-        return points_in_camera[..., :2] / z[..., None] * k[0, 0] + k[:2, 2]
+        return np.asarray(points_in_camera[..., :2] / z[..., None] * k[0, 0] + k[:2, 2])
 
 
 class EgoTrajectory:

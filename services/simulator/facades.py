@@ -7,12 +7,17 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from services.simulator.surfaces import Colour, Floats32, Image, bricks, noise, planks, plaster, to_image
+
+Floats = NDArray[np.float64]
 
 FACADE_WIDTH_M = 12.0
 BAY_M = 3.0
 _PX_PER_BAY = 256
+_GLASS = np.array([92, 78, 66], np.float32)
+_CURTAIN = np.array([196, 202, 206], np.float32)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +62,9 @@ def paint_facade(rng: np.random.Generator, style: FacadeStyle) -> Image:
         for bay in range(4):
             left = bay * _PX_PER_BAY
             if floor == 0 and bay == door_bay:
-                _door(rng, canvas, left, base, px_per_m, style)
+                _door(rng, canvas, (left, base), px_per_m, style)
             else:
-                _window(rng, canvas, left, base, px_per_m, style)
+                _window(rng, canvas, (left, base), px_per_m, style)
         if floor:
             y = int(base)
             cv2.rectangle(canvas, (0, y - 5), (width, y + 4), _toned(style.colour, 0.72), -1)
@@ -79,9 +84,10 @@ def _rectangle(canvas: Floats32, box: tuple[float, float, float, float], colour:
 
 
 def _window(
-    rng: np.random.Generator, canvas: Floats32, left: float, base: float, px_per_m: Floats32, style: FacadeStyle
+    rng: np.random.Generator, canvas: Floats32, at_px: tuple[float, float], px_per_m: Floats, style: FacadeStyle
 ) -> None:
     """Frame, mullions, sill and shutters; behind the glass a reflection, a curtain or a blind."""
+    left, base = at_px
     width_m, height_m = rng.uniform(1.0, 1.7), rng.uniform(1.25, 1.6)
     middle = left + 0.5 * _PX_PER_BAY + rng.uniform(-12, 12)
     x0, x1 = middle - 0.5 * width_m * px_per_m[0], middle + 0.5 * width_m * px_per_m[0]
@@ -98,11 +104,11 @@ def _window(
     glass = np.s_[int(y0) : int(y1), int(x0) : int(x1)]
     pane = canvas[glass]
     shine = noise(rng, pane.shape[0], pane.shape[1], [(3, 26.0), (7, 18.0)])
-    pane[:] = np.float32([92, 78, 66]) * rng.uniform(0.4, 1.2) + shine[..., None]
+    pane[:] = _GLASS * rng.uniform(0.4, 1.2) + shine[..., None]
     if rng.random() < 0.6:
         cover = int(pane.shape[0] * rng.uniform(0.2, 0.8))
         folds = 18.0 * np.sin(np.arange(pane.shape[1]) * rng.uniform(0.25, 0.6))
-        pane[:cover] = np.float32([196, 202, 206]) * rng.uniform(0.7, 1.1) + folds.astype(np.float32)[None, :, None]
+        pane[:cover] = _CURTAIN * rng.uniform(0.7, 1.1) + folds.astype(np.float32)[None, :, None]
     for k in range(1, int(rng.integers(2, 4))):
         x = x0 + (x1 - x0) * k / 2.0
         cv2.line(canvas, (int(x), int(y0)), (int(x), int(y1)), style.frame, 5)
@@ -114,13 +120,15 @@ def _window(
 
 
 def _door(
-    rng: np.random.Generator, canvas: Floats32, left: float, base: float, px_per_m: Floats32, style: FacadeStyle
+    rng: np.random.Generator, canvas: Floats32, at_px: tuple[float, float], px_per_m: Floats, style: FacadeStyle
 ) -> None:
+    left, base = at_px
     middle = left + 0.5 * _PX_PER_BAY
     x0, x1 = middle - 0.55 * px_per_m[0], middle + 0.55 * px_per_m[0]
     y0 = base - 2.1 * px_per_m[1]
     _rectangle(canvas, (x0 - 12, y0 - 12, x1 + 12, base), style.frame)
-    leaf: Colour = tuple(float(c) for c in rng.uniform(30, 150, 3))  # type: ignore[assignment]
+    red, green, blue = rng.uniform(30.0, 150.0, 3).tolist()
+    leaf: Colour = (blue, green, red)
     _rectangle(canvas, (x0, y0, x1, base), leaf)
     for row in range(2):
         for column in range(2):

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,37 +16,42 @@ from services.simulator.renderer import Hits
 Floats = NDArray[np.float64]
 
 _FAR_M = 1e7
-_DEPTH_TOLERANCE = 0.02
-"""Relative difference of depth below which two surfaces are taken for one."""
+_DEPTH_TOLERANCE, _INVERSE_TOLERANCE = 0.02, 2e-4
+"""Differences of inverse depth, relative and in 1/m, below which two surfaces are taken for one."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Surfaces seen from a pose (world_from_camera, 4x4)."""
+
+    hits: Hits
+    world_from_camera: Floats
 
 
 def flow_between(
-    camera: PinholeCamera, now: Hits, then: Hits, world_from_camera: Floats, next_world_from_camera: Floats,
-    corners_now: Floats, corners_then: Floats,
+    camera: PinholeCamera, now: View, then: View, corners_now: Floats, corners_then: Floats
 ) -> SimulatedFlow:
     """Flow from one view to the next.
 
-    now, then: surfaces of both views; the triangles of `now` have the corners (T, 3, 3), in the world frame, given for
-    both times, so that limbs of walking people move as they do.
+    The triangles that `now` hits have the corners (T, 3, 3), world frame, given for both times, so that the limbs of
+    walking people move as they do.
     """
     columns, rows = camera.pixel_grid()
     x, y = camera.normalised(columns, rows)
-    sky = now.triangle < 0
-    depth = np.where(sky, _FAR_M, now.depth_m.astype(np.float64))
+    hits, world_from_camera = now.hits, now.world_from_camera
+    sky = hits.triangle < 0
+    depth = np.where(sky, _FAR_M, hits.depth_m.astype(np.float64))
     ray = np.stack([x, y, np.ones_like(x)], axis=-1).astype(np.float64)
     point = ray * depth[..., None] @ world_from_camera[:3, :3].T + world_from_camera[:3, 3]
-    point = np.where(sky[..., None], point, _carried(point, now.triangle, corners_now, corners_then))
-    rotation, origin = next_world_from_camera[:3, :3], next_world_from_camera[:3, 3]
-    next_point = (point - origin) @ rotation
+    point = np.where(sky[..., None], point, _carried(point, hits.triangle, corners_now, corners_then))
+    next_point = (point - then.world_from_camera[:3, 3]) @ then.world_from_camera[:3, :3]
     place = camera.project(next_point)
     flow = place - np.stack([columns, rows], axis=-1)
-    visible = _seen_again(place, next_point[..., 2], then)
+    visible = _seen_again(place, next_point[..., 2], then.hits)
     return SimulatedFlow(np.nan_to_num(flow, nan=0.0).astype(np.float32), visible)
 
 
-def _carried(
-    point: Floats, triangle: NDArray[np.int32], corners_now: Floats, corners_then: Floats
-) -> Floats:
+def _carried(point: Floats, triangle: NDArray[np.int32], corners_now: Floats, corners_then: Floats) -> Floats:
     """Points moved with their triangles: position within the triangle's own axes, put back at the later time."""
     moved = np.any(corners_now != corners_then, axis=(1, 2))
     which = np.nonzero((triangle >= 0) & moved[triangle])
@@ -64,17 +72,14 @@ def _axes(corner: Floats) -> Floats:
 
 
 def _seen_again(place: Floats, depth_m: Floats, then: Hits) -> NDArray[np.bool_]:
-    """Whether the four pixels around `place` in the next view show a surface at the depth expected."""
+    """Whether the next view shows a surface of the depth expected at `place`, between pixel centres.
+
+    Inverse depth is linear in the image over a plane, so that the ground is found again however slanted it is seen,
+    while a pixel half covered by something nearer is not.
+    """
     height, width = then.depth_m.shape
     inside = np.all((place >= 0.0) & (place <= [width - 1.0, height - 1.0]), axis=-1)
-    corner = np.where(inside[..., None], np.floor(np.nan_to_num(place)), 0.0).astype(np.intp)
-    seen = then.depth_m.astype(np.float64)
-    agrees = inside
-    for dx in (0, 1):
-        for dy in (0, 1):
-            column = np.minimum(corner[..., 0] + dx, width - 1)
-            row = np.minimum(corner[..., 1] + dy, height - 1)
-            found = np.where(np.isfinite(seen[row, column]), seen[row, column], _FAR_M)
-            both_far = (found >= _FAR_M) & (depth_m >= 0.9 * _FAR_M)
-            agrees = agrees & (both_far | (np.abs(found - depth_m) < _DEPTH_TOLERANCE * depth_m + 0.05))
-    return agrees
+    at = np.where(inside[..., None], np.nan_to_num(place), 0.0).astype(np.float32)
+    seen = cv2.remap(1.0 / then.depth_m, at[..., 0], at[..., 1], cv2.INTER_LINEAR)
+    expected = 1.0 / np.maximum(depth_m, 1e-3)
+    return np.asarray(inside & (np.abs(seen - expected) < _DEPTH_TOLERANCE * expected + _INVERSE_TOLERANCE))

@@ -17,11 +17,20 @@ _EAVES_M = 0.45
 
 
 def house_mesh(
-    style: FacadeStyle, width_m: float, depth_m: float, roof: str, first_bay: int, tint: Tint,
+    style: FacadeStyle,
+    size_m: tuple[float, float],
+    roof: str,
     texture: Mapping[str, int],
+    *,
+    first_bay: int,
+    tint: Tint,
 ) -> Mesh:
-    """A house of `style`; the front begins with window bay `first_bay` of its texture, so that no two look alike."""
+    """A house of `style`, `size_m` wide and deep.
+
+    The front begins with window bay `first_bay` of its texture, so that neighbours of one style differ.
+    """
     front = texture[f"facade_{style.name}"]
+    width_m, depth_m = size_m
     height, ridge = style.height_m, style.height_m + 0.42 * depth_m
     u0 = 0.25 * first_bay
     half = 0.5 * width_m
@@ -41,7 +50,7 @@ def house_mesh(
     low = height - _EAVES_M * slope
     wide = half + 0.3
     tiles = (2.0 * wide / 4.0, np.hypot(0.5 * depth_m + _EAVES_M, ridge - low) / 4.0)
-    uv = [[0, 0], [tiles[0], 0], [tiles[0], tiles[1]], [0, tiles[1]]]
+    uv = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * tiles
     for y in (_EAVES_M, -depth_m - _EAVES_M):
         ridge_y = -0.5 * depth_m
         plane = [[-wide, ridge_y, ridge], [wide, ridge_y, ridge], [wide, y, low], [-wide, y, low]]
@@ -59,6 +68,8 @@ def fence_mesh(kind: int, length_m: float, texture: Mapping[str, int]) -> Mesh:
     if kind == 1:
         wall = box((length_m, 0.25, 0.9), (0.0, 0.0, 0.45), texture["wall"], 3.0)
         return merged([wall, box((length_m + 0.1, 0.35, 0.08), (0.0, 0.0, 0.94), texture["paving"], 4.0)])
-    posts = [box((0.12, 0.14, 1.2), (x, 0.0, 0.6), texture["boards"], 2.0)
-             for x in np.arange(-0.5 * length_m, 0.5 * length_m + 0.1, 1.8)]
+    posts = [
+        box((0.12, 0.14, 1.2), (x, 0.0, 0.6), texture["boards"], 2.0)
+        for x in np.arange(-0.5 * length_m, 0.5 * length_m + 0.1, 1.8)
+    ]
     return merged([box((length_m, 0.05, 1.0), (0.0, 0.0, 0.56), texture["boards"], 2.0), *posts])

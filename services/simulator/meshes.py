@@ -81,9 +81,7 @@ def quads(corners: ArrayLike, uv: ArrayLike, texture: int, tint: Tint = WHITE, o
     )
 
 
-def box(
-    size: Sequence[float], centre: Sequence[float], texture: int, tile_m: float = 1.0, tint: Tint = WHITE
-) -> Mesh:
+def box(size: Sequence[float], centre: Sequence[float], texture: int, tile_m: float = 1.0, tint: Tint = WHITE) -> Mesh:
     """Axis-aligned box of `size` (x, y, z) metres whose texture repeats every `tile_m` metres."""
     hx, hy, hz = (0.5 * float(v) for v in size)
     corners, coordinates = [], []
@@ -101,8 +99,15 @@ def box(
 
 
 def tube(
-    start: ArrayLike, end: ArrayLike, radii: tuple[float, float], texture: int, sides: int = 8,
-    repeat: tuple[float, float] = (1.0, 1.0), tint: Tint = WHITE, caps: bool = True,
+    start: ArrayLike,
+    end: ArrayLike,
+    radii: tuple[float, float],
+    texture: int,
+    sides: int = 8,
+    *,
+    repeat: tuple[float, float] = (1.0, 1.0),
+    tint: Tint = WHITE,
+    caps: bool = True,
 ) -> Mesh:
     """Tapered tube from `start` to `end`; the texture goes `repeat` times round and along it."""
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
@@ -137,8 +142,14 @@ def disc(ring: NDArray[np.float64], centre: NDArray[np.float64], texture: int, t
 
 
 def blob(
-    centre: Sequence[float], radii: Sequence[float], texture: int, rng: np.random.Generator | None = None,
-    sides: int = 8, repeat: tuple[float, float] = (2.0, 1.0), tint: Tint = WHITE,
+    centre: Sequence[float],
+    radii: Sequence[float],
+    texture: int,
+    rng: np.random.Generator | None = None,
+    *,
+    sides: int = 8,
+    repeat: tuple[float, float] = (2.0, 1.0),
+    tint: Tint = WHITE,
 ) -> Mesh:
     """Ellipsoid of `radii` (x, y, z), dented at random by up to a fifth when a generator is given."""
     rings = max(4, sides // 2 + 1)
@@ -156,10 +167,9 @@ def blob(
     return surface(points, grid, texture, tint)
 
 
-def surface(
-    points: NDArray[np.float64], uv: NDArray[np.float64], texture: int, tint: Tint = WHITE
-) -> Mesh:
+def surface(points: NDArray[np.float64], uv: NDArray[np.float64], texture: int, tint: Tint = WHITE) -> Mesh:
     """One part from a grid of points (R, C, 3) with texture coordinates (R, C, 2)."""
+
     def cells(grid: NDArray[np.float64]) -> NDArray[np.float64]:
         stacked = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
         return stacked.reshape(-1, 4, grid.shape[-1])

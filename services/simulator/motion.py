@@ -30,7 +30,7 @@ class SpeedProfile:
 
     def speed_m_s(self, t_s: Floats | float) -> Floats:
         """Speed at a time."""
-        return np.interp(t_s, self._t, self._v)
+        return np.asarray(np.interp(t_s, self._t, self._v))
 
     def distance_m(self, t_s: Floats | float) -> Floats:
         """Way gone since the first knot (negative before it), exact."""
@@ -39,7 +39,8 @@ class SpeedProfile:
         k = np.searchsorted(self._t, inside, side="right") - 1
         since = inside - self._t[k]
         gone = self._way[k] + 0.5 * (self._v[k] + self.speed_m_s(inside)) * since
-        return gone + np.minimum(t - self._t[0], 0.0) * self._v[0] + np.maximum(t - self._t[-1], 0.0) * self._v[-1]
+        outside = np.minimum(t - self._t[0], 0.0) * self._v[0] + np.maximum(t - self._t[-1], 0.0) * self._v[-1]
+        return np.asarray(gone + outside)
 
 
 class Path(Protocol):
@@ -99,4 +100,4 @@ def ground_height_m(road: Road, s: Floats, n: Floats) -> Floats:
     """Height of the ground: the kerbs are walked up and down over 0.3 m, crossing streets lie low."""
     away = [(np.abs(n) - KERB_M)] + [np.abs(s - junction) - CROSS_HALF_WIDTH_M for junction in road.junctions_m]
     up = np.min(away, axis=0) / _KERB_STEP_M + 0.5
-    return KERB_HEIGHT_M * np.minimum(np.maximum(up, 0.0), 1.0)  # type: ignore[no-any-return]
+    return np.asarray(KERB_HEIGHT_M * np.minimum(np.maximum(up, 0.0), 1.0))

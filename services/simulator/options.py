@@ -9,8 +9,16 @@ from fractions import Fraction
 
 from services.runtime.errors import InputError
 
-_COUNTS = ("parked_cars", "oncoming_cars", "leading_cars", "crossing_cars", "starting_cars",
-           "walking_people", "crossing_people", "standing_people")
+_COUNTS = (
+    "parked_cars",
+    "oncoming_cars",
+    "leading_cars",
+    "crossing_cars",
+    "starting_cars",
+    "walking_people",
+    "crossing_people",
+    "standing_people",
+)
 _MAX_FRAMES = 20_000
 _MAX_SIDE_PX = 4096
 

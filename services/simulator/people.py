@@ -46,9 +46,9 @@ def person_mesh(jacket: int, height_m: float, texture: Mapping[str, int], with_b
     coat, cloth, skin = texture[f"jacket_{jacket}"], texture["jeans"], texture["skin"]
     pieces: list[tuple[Mesh, float, float]] = []
     for side in (-1.0, 1.0):
-        thigh = tube((0, 0.1 * side, _HIP_M), (0.01, 0.1 * side, 0.08), (0.1, 0.06), cloth, 7, (2.0, 2.0))
+        thigh = tube((0, 0.1 * side, _HIP_M), (0.01, 0.1 * side, 0.08), (0.1, 0.06), cloth, 7, repeat=(2.0, 2.0))
         shoe = blob((0.06, 0.1 * side, 0.05), (0.15, 0.055, 0.06), texture["rubber"], sides=6)
-        arm = tube((0, 0.25 * side, _SHOULDER_M), (0.04, 0.29 * side, 0.86), (0.065, 0.045), coat, 6, (2.0, 2.0))
+        arm = tube((0, 0.25 * side, _SHOULDER_M), (0.04, 0.29 * side, 0.86), (0.065, 0.045), coat, 6, repeat=(2.0, 2.0))
         hand = blob((0.05, 0.29 * side, 0.8), (0.05, 0.03, 0.07), skin, sides=6)
         pieces += [(thigh, _HIP_M, 0.42 * side), (shoe, _HIP_M, 0.42 * side)]
         pieces += [(arm, _SHOULDER_M, -0.38 * side), (hand, _SHOULDER_M, -0.38 * side)]

@@ -18,7 +18,8 @@ def _open3d() -> Any:
     try:
         import open3d
     except (ImportError, OSError) as error:
-        raise ResourceError(f"simulator: Open3D cannot be loaded ({error}); expected open3d and libusb-1.0-0") from error
+        message = f"simulator: Open3D cannot be loaded ({error}); expected open3d and Debian's libusb-1.0-0"
+        raise ResourceError(message) from error
     return open3d
 
 

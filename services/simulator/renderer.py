@@ -74,9 +74,9 @@ class Renderer:
         view, row_of = self._view(world_from_camera, tables, [hits, again[0]])
         colour = self._shaded(view, row_of, hits, self._x, self._y)
         if len(edge[0]):
-            more = self._shaded(view, row_of, *again).reshape(-1, 3)
-            more = more[: len(edge[0]) * len(_EDGE_OFFSETS_PX)].reshape(len(_EDGE_OFFSETS_PX), -1, 3)
-            colour[edge] = (colour[edge] + more.sum(axis=0)) / np.float32(len(_EDGE_OFFSETS_PX) + 1)
+            beside = self._shaded(view, row_of, *again).reshape(-1, 3)[: len(edge[0]) * len(_EDGE_OFFSETS_PX)]
+            total = colour[edge] + beside.reshape(len(_EDGE_OFFSETS_PX), -1, 3).sum(axis=0)
+            colour[edge] = total / np.float32(len(_EDGE_OFFSETS_PX) + 1)
         image = np.clip(colour + np.float32(0.5), 0.0, 255.0).astype(np.uint8)
         instance = np.append(_per_triangle([table.instance for table in tables]), 0)[hits.triangle]
         return RenderedView(image, hits, instance)
@@ -91,9 +91,7 @@ class Renderer:
         )
         return self._nearest(world_from_camera, moving, columns, rows), *self._camera.normalised(columns, rows)
 
-    def _nearest(
-        self, world_from_camera: Floats, moving: Surfaces | None, columns: Floats32, rows: Floats32
-    ) -> Hits:
+    def _nearest(self, world_from_camera: Floats, moving: Surfaces | None, columns: Floats32, rows: Floats32) -> Hits:
         x, y = (grid.ravel() for grid in self._camera.normalised(columns, rows))
         axes = world_from_camera[:3, :3].astype(np.float32)
         directions = np.empty((x.size, 3), np.float32)
@@ -118,7 +116,7 @@ class Renderer:
         corner = np.where(_BOX_CORNERS[None], high[:, None], low[:, None])
         points = (corner - world_from_camera[:3, 3]) @ world_from_camera[:3, :3]
         place = self._camera.project(points)
-        close = (points[..., 2] < 0.2).any(axis=1)
+        close = points[..., 2].min(axis=1) < 0.2
         covered = np.zeros(self._columns.shape, bool)
         for box, whole_image in zip(place, close, strict=True):
             if whole_image:
@@ -147,15 +145,11 @@ class Renderer:
             table = joined([table, tables[1].take(rows[rows >= split] - split)])
         return self._shader.view(table, world_from_camera, self._camera.fx_px), row_of
 
-    def _shaded(
-        self, view: ViewTriangles, row_of: NDArray[np.int32], hits: Hits, x: Floats32, y: Floats32
-    ) -> Floats32:
+    def _shaded(self, view: ViewTriangles, row_of: NDArray[np.int32], hits: Hits, x: Floats32, y: Floats32) -> Floats32:
         """Colours, (N, M, 3), worked out band by band."""
         height = max(1, _BAND_PX // x.shape[1])
         bands = [np.s_[row : row + height] for row in range(0, len(x), height)]
-        shaded = [
-            self._shader.shade(view, row_of[hits.triangle[b]], hits.depth_m[b], x[b], y[b]) for b in bands
-        ]
+        shaded = [self._shader.shade(view, row_of[hits.triangle[b]], hits.depth_m[b], x[b], y[b]) for b in bands]
         return np.concatenate(shaded) if shaded else np.zeros((*x.shape, 3), np.float32)
 
 

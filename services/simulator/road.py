@@ -27,7 +27,7 @@ _MARGIN_M = 40.0
 
 @dataclass(frozen=True, slots=True)
 class Bend:
-    """A bend of length `length_m` from `start_m` that turns by `angle_rad` (left positive) with raised-cosine curvature."""
+    """A bend from `start_m` on that turns by `angle_rad`, left positive; its curvature is a raised cosine."""
 
     start_m: float
     length_m: float
@@ -72,7 +72,7 @@ class Road:
         x = (np.asarray(s, np.float64)[..., None] - self._bend_start_m) / self._bend_length_m
         x = np.minimum(np.maximum(x, 0.0), 1.0)
         turned = self._bend_angle_rad * (x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi))
-        return turned.sum(axis=-1)  # type: ignore[no-any-return]
+        return np.asarray(turned.sum(axis=-1))
 
     def point(self, s: Floats | float, n: Floats | float) -> Floats:
         """World (x, y) of road coordinates, shape (..., 2), metres; straight on beyond both ends."""

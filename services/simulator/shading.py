@@ -14,7 +14,7 @@ Floats32 = NDArray[np.float32]
 
 _TO_SUN = np.array([0.42, 0.36, 0.83]) / np.linalg.norm([0.42, 0.36, 0.83])
 _SUN, _SKY_LIGHT, _GROUND_LIGHT = 0.62, 0.50, 0.40
-_HAZE_COLOUR = np.float32([226.0, 214.0, 204.0])
+_HAZE_COLOUR = np.array([226.0, 214.0, 204.0], np.float32)
 _HAZE_LENGTH_M = 700.0
 _FOOTPRINT = 0.85
 """Share of a pixel's extent that a texture is filtered over; the rest is left to the lens."""
@@ -43,8 +43,8 @@ class Shader:
         slant = t / (column[6] * x + column[7] * y + column[8])
         u = column[9] + t * ju
         v = column[10] + t * jv
-        du = _extent(t, ju, slant, column[0], column[1], column[6], column[7])
-        dv = _extent(t, jv, slant, column[3], column[4], column[6], column[7])
+        du = _extent(t * column[0:2], ju * slant * column[6:8])
+        dv = _extent(t * column[3:5], jv * slant * column[6:8])
         if sky.any():
             u[sky], v[sky] = view.sky_position(x[sky], y[sky])
             du[sky] = dv[sky] = 0.5 * view.pixel
@@ -102,13 +102,11 @@ class ViewTriangles:
         return azimuth, np.clip(1.0 - 2.2 * rise, 0.01, 0.99).astype(np.float32)
 
 
-def _extent(
-    t: Floats32, along: Floats32, slant: Floats32, by_x: Floats32, by_y: Floats32, n_x: Floats32, n_y: Floats32
-) -> Floats32:
-    """Extent of one texture coordinate over a unit of x and y together."""
-    across_x = t * by_x - along * slant * n_x
-    across_y = t * by_y - along * slant * n_y
-    return np.sqrt(across_x * across_x + across_y * across_y)
+def _extent(by_axes: Floats32, by_slant: Floats32) -> Floats32:
+    """Extent of one texture coordinate over a unit of x and of y together; arguments (2, ...), one row an axis."""
+    across = by_axes - by_slant
+    np.square(across, out=across)
+    return np.asarray(np.sqrt(across[0] + across[1]))
 
 
 def _light(table: TriangleTable, to_camera: Floats) -> Floats:
@@ -117,4 +115,4 @@ def _light(table: TriangleTable, to_camera: Floats) -> Floats:
     normal = table.normal * np.where(facing == 0.0, 1.0, facing)[:, None]
     sun = np.maximum(normal @ _TO_SUN, 0.0)
     sky = 0.5 + 0.5 * normal[:, 2]
-    return table.tint * (_SUN * sun + _SKY_LIGHT * sky + _GROUND_LIGHT * (1.0 - sky))[:, None]
+    return np.asarray(table.tint * (_SUN * sun + _SKY_LIGHT * sky + _GROUND_LIGHT * (1.0 - sky))[:, None])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from services.runtime.errors import InputError
 from services.simulator.actors import Actor, ActorState
 from services.simulator.camera import EgoTrajectory, PinholeCamera
-from services.simulator.flow import flow_between
+from services.simulator.flow import View, flow_between
 from services.simulator.frame import SimulatedFlow, SimulatedFrame, SimulatedInstance
 from services.simulator.library import paint_library
 from services.simulator.options import StreetOptions
@@ -84,14 +84,18 @@ class Street:
         now = self._renderer.cast(pose, self._moving_surfaces(pose, t_s))
         then = self._renderer.cast(next_pose, self._moving_surfaces(next_pose, next_t_s))
         corners_now, corners_then = (
-            np.concatenate([
-                self._static.table.corner,
-                *(actor.vertices_in_world(actor.at(t))[actor.mesh.triangles]
-                  for actor, _ in self._moving_actors_near(pose, t_s)),
-            ])
+            np.concatenate(
+                [
+                    self._static.table.corner,
+                    *(
+                        actor.vertices_in_world(actor.at(t))[actor.mesh.triangles]
+                        for actor, _ in self._moving_actors_near(pose, t_s)
+                    ),
+                ]
+            )
             for t in (t_s, next_t_s)
         )
-        return flow_between(self.camera, now, then, pose, next_pose, corners_now, corners_then)
+        return flow_between(self.camera, View(now, pose), View(then, next_pose), corners_now, corners_then)
 
     def _time_s(self, index: int) -> float:
         return self.options.timestamp_ns(self._checked(index)) * 1e-9
@@ -101,9 +105,7 @@ class Street:
             raise InputError(f"simulator frame {index}: expected 0 to {self.frame_count - 1}")
         return index
 
-    def _moving_actors_near(
-        self, world_from_camera: NDArray[np.float64], t_s: float
-    ) -> list[tuple[Actor, ActorState]]:
+    def _moving_actors_near(self, world_from_camera: NDArray[np.float64], t_s: float) -> list[tuple[Actor, ActorState]]:
         """Those that may be in sight and are not part of the static scene."""
         near = []
         for actor in self.actors:
@@ -132,10 +134,19 @@ class Street:
             x, y = int(columns[mine].min()), int(rows[mine].min())
             box = (x, y, int(columns[mine].max()) - x + 1, int(rows[mine].max()) - y + 1)
             state = actor.at(t_s)
-            found.append(SimulatedInstance(
-                actor.instance_id, actor.category, state.moving, state.velocity_m_s, state.centre_m,
-                state.heading_rad, actor.size_m, box, int(mine.sum()),
-            ))
+            found.append(
+                SimulatedInstance(
+                    actor.instance_id,
+                    actor.category,
+                    state.moving,
+                    state.velocity_m_s,
+                    state.centre_m,
+                    state.heading_rad,
+                    actor.size_m,
+                    box,
+                    int(mine.sum()),
+                )
+            )
         return found
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -12,6 +13,11 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 Floats32 = NDArray[np.float32]
 Colour = tuple[float, float, float]
+
+_HAZE = np.array([214, 204, 194], np.float32)
+_ZENITH = np.array([222, 168, 118], np.float32)
+_HORIZON = np.array([232, 220, 206], np.float32)
+_CLOUD = np.array([246, 244, 242], np.float32)
 
 
 def noise(rng: np.random.Generator, height: int, width: int, cells: Sequence[tuple[int, float]]) -> Floats32:
@@ -38,7 +44,7 @@ def coloured(value: Floats32, colour: Colour) -> Floats32:
 
 def to_image(values: Floats32) -> Image:
     """Rounded and clipped to uint8."""
-    return np.clip(values + 0.5, 0.0, 255.0).astype(np.uint8)
+    return np.asarray(np.clip(values + 0.5, 0.0, 255.0), np.uint8)
 
 
 def asphalt(rng: np.random.Generator, size: int = 1024) -> Image:
@@ -61,7 +67,7 @@ def _crack(rng: np.random.Generator, canvas: Floats32, tone: float) -> None:
     line = np.cumsum(steps, axis=0) + rng.uniform(0, size, 2)
     for dx in (-size, 0, size):
         for dy in (-size, 0, size):
-            points = np.round(line + [dx, dy]).astype(np.int32)
+            points = np.round(line + np.array([dx, dy])).astype(np.int32)
             cv2.polylines(canvas, [points], False, tone, int(rng.integers(1, 4)) if dx == dy == 0 else 2)
 
 
@@ -133,7 +139,7 @@ def planks(rng: np.random.Generator, colour: Colour, height: int, width: int, ro
     """Weathered boards, as float canvas."""
     value = noise(rng, height, 1, [(height // 3, 4)]).repeat(width, axis=1) + noise(rng, height, width, [(200, 8)])
     edges = np.linspace(0, height, rows + 1).astype(int)
-    for y0, y1 in zip(edges[:-1], edges[1:], strict=True):
+    for y0, y1 in pairwise(edges):
         value[y0:y1] += rng.uniform(-18.0, 18.0)
         value[y0 : y0 + 2] -= 40.0
     return coloured(value, colour)
@@ -187,12 +193,12 @@ def tree_line(rng: np.random.Generator, height: int = 128, width: int = 1024) ->
     """Distant wood, lighter towards the top where haze lies."""
     value = noise(rng, height, width, [(24, 16), (80, 20), (256, 18)])
     haze = np.linspace(0.55, 0.25, height, dtype=np.float32)[:, None, None]
-    return to_image(coloured(value, (74.0, 98.0, 84.0)) * (1 - haze) + np.float32([214, 204, 194]) * haze)
+    return to_image(coloured(value, (74.0, 98.0, 84.0)) * (1 - haze) + _HAZE * haze)
 
 
 def clouds(rng: np.random.Generator, height: int = 256, width: int = 1024) -> Image:
     """Sky from the zenith (row 0) to the horizon (last row), all the way round."""
     down = np.linspace(0.0, 1.0, height, dtype=np.float32)[:, None, None]
-    blue = np.float32([222, 168, 118]) * (1.0 - down) + np.float32([232, 220, 206]) * down
+    blue = _ZENITH * (1.0 - down) + _HORIZON * down
     cover = np.clip(noise(rng, height, width, [(14, 0.5), (32, 0.35), (80, 0.22), (200, 0.1)]) + 0.05, 0.0, 0.8)
-    return to_image(blue * (1.0 - cover[..., None]) + np.float32([246, 244, 242]) * cover[..., None])
+    return to_image(blue * (1.0 - cover[..., None]) + _CLOUD * cover[..., None])

@@ -118,5 +118,9 @@ def _halvings(image: Image, axis: int) -> list[Image]:
     while levels[-1].shape[axis] > 1:
         height, width = levels[-1].shape[:2]
         size = (width, height // 2) if axis == 0 else (width // 2, height)
-        levels.append(cv2.resize(levels[-1], size, interpolation=cv2.INTER_AREA))
+        levels.append(
+            np.asarray(cv2.resize(levels[-1], size, interpolation=cv2.INTER_AREA), np.uint8).reshape(
+                size[1], size[0], 3
+            )
+        )
     return levels

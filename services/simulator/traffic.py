@@ -46,9 +46,7 @@ class Looks(TypedDict):
 class TrafficPlanner:
     """Draws actors one after another; each is drawn again until it keeps clear of the camera and of all before it."""
 
-    def __init__(
-        self, options: StreetOptions, road: Road, ego: EgoTrajectory, texture: Mapping[str, int]
-    ) -> None:
+    def __init__(self, options: StreetOptions, road: Road, ego: EgoTrajectory, texture: Mapping[str, int]) -> None:
         self._options, self._road, self._ego, self._texture = options, road, ego, texture
         self._rng = np.random.default_rng([options.seed, 4])
         self._actors: list[Actor] = []
@@ -119,7 +117,7 @@ class TrafficPlanner:
         position = self._ego.xy(self._times)
         step = self._ego.xy(self._times + 0.01) - position
         ahead = step / np.linalg.norm(step, axis=1, keepdims=True)
-        return position[:, None] + np.array(_EGO_DISCS_M)[None, :, None] * ahead[:, None]
+        return np.asarray(position[:, None] + np.array(_EGO_DISCS_M)[None, :, None] * ahead[:, None])
 
     def _car(self, instance_id: int) -> Looks:
         rng = np.random.default_rng([self._options.seed, 5, instance_id])
@@ -127,8 +125,12 @@ class TrafficPlanner:
         paint = vehicles.PAINTS[int(rng.integers(0, len(vehicles.PAINTS)))]
         half = 0.5 * style.size_m[0] - 0.75
         return Looks(
-            category="car", mesh=vehicles.car_mesh(style, paint, self._texture), size_m=style.size_m, gait=None,
-            disc_radius_m=1.05, disc_offsets_m=(-half, 0.0, half),
+            category="car",
+            mesh=vehicles.car_mesh(style, paint, self._texture),
+            size_m=style.size_m,
+            gait=None,
+            disc_radius_m=1.05,
+            disc_offsets_m=(-half, 0.0, half),
         )
 
     def _person(self, instance_id: int) -> Looks:
@@ -137,9 +139,7 @@ class TrafficPlanner:
         jacket = int(rng.integers(0, people.JACKET_COUNT))
         mesh, gait = people.person_mesh(jacket, height, self._texture, bool(rng.random() < 0.5))
         size = (people.PERSON_SIZE_M[0], people.PERSON_SIZE_M[1], height)
-        return Looks(
-            category="person", mesh=mesh, size_m=size, gait=gait, disc_radius_m=0.38, disc_offsets_m=(0.0,)
-        )
+        return Looks(category="person", mesh=mesh, size_m=size, gait=gait, disc_radius_m=0.38, disc_offsets_m=(0.0,))
 
     def _meeting(self) -> tuple[float, float]:
         """A place in the traffic's part of the street and the time the camera comes there."""
@@ -161,10 +161,10 @@ class TrafficPlanner:
     def _crossing_car(self, number: int) -> Route:
         """Across a side street, before the camera gets there."""
         places = [s for s in self._road.junctions_m if s < self._road.length_m]
-        s = places[number % len(places)] if places else self._road.length_m
+        s = float(self._rng.choice(places))
         direction = 1.0 if self._rng.random() < 0.5 else -1.0
-        cruise = float(self._rng.uniform(5.0, 8.0))
-        passing = self._ego.time_s(s - float(self._rng.uniform(17.0, 38.0)))
+        cruise = float(self._rng.uniform(4.5, 9.0))
+        passing = self._ego.time_s(s - float(self._rng.uniform(15.0, 45.0)))
         start = -direction * 90.0
         arrival = (90.0 - LANE_CENTRE_M) / cruise
         speed = SpeedProfile([(passing - arrival, cruise), (passing, cruise)])

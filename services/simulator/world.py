@@ -34,13 +34,18 @@ def build_world(road: Road, seed: int, texture: Mapping[str, int]) -> Mesh:
     pieces = [_ground(road, first, last, texture), _horizon(road, texture)]
     pieces += _markings(road, rng, first, last, texture)
     for side in (-1.0, 1.0):
-        pieces += _row_of_houses(road, rng, side, first, last, texture)
-        pieces += _street_furniture(road, rng, side, first, last, texture)
+        pieces += _row_of_houses(road, rng, side, (first, last), texture)
+        pieces += _street_furniture(road, rng, side, (first, last), texture)
     return merged(pieces)
 
 
 def _strip(
-    road: Road, s: NDArray[np.float64], edges: list[tuple[float, float]], texture: int, tile_m: float,
+    road: Road,
+    s: NDArray[np.float64],
+    edges: list[tuple[float, float]],
+    texture: int,
+    *,
+    tile_m: float,
     tint: float = 1.0,
 ) -> Mesh:
     """One part along the road through (n, z) `edges`, textured in metres along and across."""
@@ -55,22 +60,23 @@ def _strip(
 def _stretches(road: Road, first: float, last: float, gap_m: float) -> list[NDArray[np.float64]]:
     """Sample positions of the stretches between junctions."""
     cuts = [first, *(s for j in road.junctions_m for s in (j - gap_m, j + gap_m)), last]
-    return [np.linspace(a, b, max(2, int((b - a) / 2.0) + 1))
-            for a, b in zip(cuts[::2], cuts[1::2], strict=True) if b > a]
+    return [
+        np.linspace(a, b, max(2, int((b - a) / 2.0) + 1)) for a, b in zip(cuts[::2], cuts[1::2], strict=True) if b > a
+    ]
 
 
 def _ground(road: Road, first: float, last: float, texture: Mapping[str, int]) -> Mesh:
     along = np.linspace(first, last, int((last - first) / 2.0) + 1)
-    pieces = [_strip(road, along, [(-KERB_M, 0.0), (0.0, 0.0), (KERB_M, 0.0)], texture["asphalt"], 10.24)]
+    pieces = [_strip(road, along, [(-KERB_M, 0.0), (0.0, 0.0), (KERB_M, 0.0)], texture["asphalt"], tile_m=10.24)]
     top = KERB_HEIGHT_M
     for s in _stretches(road, first, last, _CORNER_M):
         for side in (-1.0, 1.0):
             kerb = [(side * KERB_M, -0.02), (side * KERB_M, top), (side * (KERB_M + 0.18), top)]
             pavement = [(side * (KERB_M + 0.18), top), (side * PAVEMENT_EDGE_M, top)]
             garden = [(side * PAVEMENT_EDGE_M, top), (side * 20.0, top), (side * 48.0, top)]
-            pieces.append(_strip(road, s, kerb, texture["paving"], 4.0, 1.12))
-            pieces.append(_strip(road, s, pavement, texture["paving"], 4.0, 0.92))
-            pieces.append(_strip(road, s, garden, texture["grass"], 5.0))
+            pieces.append(_strip(road, s, kerb, texture["paving"], tile_m=4.0, tint=1.12))
+            pieces.append(_strip(road, s, pavement, texture["paving"], tile_m=4.0, tint=0.92))
+            pieces.append(_strip(road, s, garden, texture["grass"], tile_m=5.0))
     for junction in road.junctions_m:
         for side in (-1.0, 1.0):
             pieces += _cross_street(road, junction, side, texture)
@@ -79,6 +85,7 @@ def _ground(road: Road, first: float, last: float, texture: Mapping[str, int]) -
 
 def _cross_street(road: Road, s: float, side: float, texture: Mapping[str, int]) -> list[Mesh]:
     """One arm of the street that crosses at `s`; the road is straight there."""
+
     def plane(low: float, high: float, z: float, name: str, tile_m: float) -> Mesh:
         n = np.linspace(KERB_M, _CROSS_LENGTH_M, 12)
         points = road.point(s + np.array([[low], [high]]), side * n[None, :])
@@ -94,8 +101,9 @@ def _cross_street(road: Road, s: float, side: float, texture: Mapping[str, int])
     ]
 
 
-def _decal(road: Road, s: float, n: float, size: tuple[float, float], texture: int, layer: int = 1) -> Mesh:
-    """Flat thing on the road, `size` metres along and across."""
+def _decal(road: Road, at: tuple[float, float], size: tuple[float, float], texture: int, layer: int = 1) -> Mesh:
+    """Flat thing on the road at (s, n), `size` metres along and across."""
+    s, n = at
     half_s, half_n = 0.5 * size[0], 0.5 * size[1]
     plane = road.point(s + half_s * np.array([-1, 1, 1, -1]), n + half_n * np.array([1, 1, -1, -1]))
     corners = np.column_stack([plane, np.full(4, layer * _MARK_HEIGHT_M)])
@@ -110,31 +118,32 @@ def _markings(
     paint = texture["worn_paint"]
     for s in np.arange(first, last, 6.0):
         if not road.near_junction(s, 8.0):
-            pieces.append(_decal(road, s, 0.0, (3.0, 0.14), paint, 2))
+            pieces.append(_decal(road, (s, 0.0), (3.0, 0.14), paint, 2))
         for side in (-1.0, 1.0):
             if not road.near_junction(s, 11.0):
                 middle = 0.5 * (LANE_EDGE_M + KERB_M)
-                pieces.append(_decal(road, s + 3.0, side * middle, (0.12, KERB_M - LANE_EDGE_M), paint, 2))
-                pieces.append(_decal(road, s + 3.0, side * LANE_EDGE_M, (1.2, 0.12), paint, 2))
+                pieces.append(_decal(road, (s + 3.0, side * middle), (0.12, KERB_M - LANE_EDGE_M), paint, 2))
+                pieces.append(_decal(road, (s + 3.0, side * LANE_EDGE_M), (1.2, 0.12), paint, 2))
     for junction in road.junctions_m:
         for n in np.arange(-KERB_M + 0.7, KERB_M - 0.5, 1.1):
-            pieces.append(_decal(road, junction - 7.6, float(n), (3.2, 0.55), paint, 2))
-        pieces.append(_decal(road, junction - 10.2, -0.5 * LANE_EDGE_M, (0.4, LANE_EDGE_M), paint, 2))
-        pieces.append(_decal(road, junction + 6.4, 0.5 * LANE_EDGE_M, (0.4, LANE_EDGE_M), paint, 2))
+            pieces.append(_decal(road, (junction - 7.6, float(n)), (3.2, 0.55), paint, 2))
+        pieces.append(_decal(road, (junction - 10.2, -0.5 * LANE_EDGE_M), (0.4, LANE_EDGE_M), paint, 2))
+        pieces.append(_decal(road, (junction + 6.4, 0.5 * LANE_EDGE_M), (0.4, LANE_EDGE_M), paint, 2))
     for _ in range(int((last - first) / 5.0)):
         size = (float(rng.uniform(0.6, 3.5)), float(rng.uniform(0.5, 2.2)))
         s, n = float(rng.uniform(first, last)), float(rng.uniform(-4.0, 4.0))
-        pieces.append(_decal(road, s, n, size, texture["patch"]))
+        pieces.append(_decal(road, (s, n), size, texture["patch"]))
     for _ in range(int((last - first) / 14.0)):
         s, n = float(rng.uniform(first, last)), float(rng.uniform(-3.0, 3.0))
-        pieces.append(_decal(road, s, n, (0.75, 0.75), texture["manhole"], 3))
+        pieces.append(_decal(road, (s, n), (0.75, 0.75), texture["manhole"], 3))
     return pieces
 
 
 def _row_of_houses(
-    road: Road, rng: np.random.Generator, side: float, first: float, last: float, texture: Mapping[str, int]
+    road: Road, rng: np.random.Generator, side: float, reach: tuple[float, float], texture: Mapping[str, int]
 ) -> list[Mesh]:
     """Houses with gardens along one side, a wood behind them; fronts look at the road."""
+    first, last = reach
     pieces = []
     s = first + float(rng.uniform(2.0, 8.0))
     turn = np.pi if side > 0 else 0.0
@@ -146,10 +155,14 @@ def _row_of_houses(
         if road.near_junction(middle, _CORNER_M + 0.5 * width + 0.5):
             continue
         setback = float(rng.uniform(2.4, 6.5))
-        tone = rng.uniform(0.84, 1.12, 3) * rng.uniform(0.85, 1.05)
+        tone = rng.uniform(0.88, 1.1, 3) * rng.uniform(0.85, 1.05)
         house = houses.house_mesh(
-            style, width, float(rng.uniform(8.0, 11.0)), ROOFS[int(rng.integers(0, len(ROOFS)))],
-            int(rng.integers(0, 4)), (float(tone[0]), float(tone[1]), float(tone[2])), texture,
+            style,
+            (width, float(rng.uniform(8.0, 11.0))),
+            ROOFS[int(rng.integers(0, len(ROOFS)))],
+            texture,
+            first_bay=int(rng.integers(0, 4)),
+            tint=(float(tone[0]), float(tone[1]), float(tone[2])),
         )
         pieces.append(house.transformed(road.pose(middle, side * (PAVEMENT_EDGE_M + setback), turn, KERB_HEIGHT_M)))
         if setback > 3.4 and rng.random() < 0.7:
@@ -168,9 +181,10 @@ def _row_of_houses(
 
 
 def _street_furniture(
-    road: Road, rng: np.random.Generator, side: float, first: float, last: float, texture: Mapping[str, int]
+    road: Road, rng: np.random.Generator, side: float, reach: tuple[float, float], texture: Mapping[str, int]
 ) -> list[Mesh]:
     """Trees and lamps along the kerb, signs, bins."""
+    first, last = reach
     pieces = []
     turn = np.pi if side > 0 else 0.0
     kerb = KERB_M + 0.75
