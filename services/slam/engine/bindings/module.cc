@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+
+#include "bindings/array_conversion.h"
+#include "engine.h"
+
+namespace py = pybind11;
+
+namespace kinemap {
+namespace {
+
+/// The engine behind a lock, so that two Python threads cannot enter it while the GIL is released.
+class LockedEngine {
+ public:
+  LockedEngine(const CameraModel& camera, const EngineOptions& options) : engine_(camera, options) {}
+
+  void BeginFrame(int64_t timestamp_ns, const py::array& image) {
+    const cv::Mat view = ImageView<uint8_t>("image", image, CV_8U);
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    engine_.BeginFrame(timestamp_ns, view);
+  }
+
+  TrackingResult FinishFrame(const std::optional<py::array>& track_image, const py::array& object_ids,
+                             const py::array& categories, const py::array& motion_states, bool masks_fresh,
+                             const std::optional<py::array>& depth_m) {
+    FrameObjects objects;
+    // CV_32S holds the same bits; OpenCV 4.6 knows no unsigned 32-bit matrix.
+    if (track_image) objects.track_image = ImageView<uint32_t>("track_image", *track_image, CV_32S);
+    objects.rows = ObjectRows(object_ids, categories, motion_states);
+    objects.masks_fresh = masks_fresh;
+    cv::Mat depth;
+    if (depth_m) depth = ImageView<float>("depth_m", *depth_m, CV_32F);
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return engine_.FinishFrame(objects, depth);
+  }
+
+  void Flush() {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    engine_.Flush();
+  }
+
+  py::dict TakeMapUpdate() {
+    MapUpdate update;
+    {
+      const py::gil_scoped_release release;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      update = engine_.TakeUpdate();
+    }
+    return ToDict(update);
+  }
+
+ private:
+  std::mutex mutex_;
+  Engine engine_;
+};
+
+void BindOptions(py::module_& module) {
+  py::enum_<Stage>(module, "Stage")
+      .value("base", Stage::kBase)
+      .value("dynamic", Stage::kDynamic)
+      .value("moving", Stage::kMoving);
+  py::class_<CameraModel>(module, "CameraModel")
+      .def(py::init<int, int, double, double, double, double, const std::vector<double>&>(), py::arg("width"),
+           py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
+           py::arg("distortion") = std::vector<double>{})
+      .def_property_readonly("width", &CameraModel::width_px)
+      .def_property_readonly("height", &CameraModel::height_px);
+  py::class_<EngineOptions>(module, "EngineOptions")
+      .def(py::init<>())
+      .def_readwrite("stage", &EngineOptions::stage)
+      .def_readwrite("features", &EngineOptions::features)
+      .def_readwrite("pyramid_levels", &EngineOptions::pyramid_levels)
+      .def_readwrite("pyramid_factor", &EngineOptions::pyramid_factor)
+      .def_readwrite("fast_threshold", &EngineOptions::fast_threshold)
+      .def_readwrite("fast_threshold_low", &EngineOptions::fast_threshold_low)
+      .def_readwrite("mask_border_px", &EngineOptions::mask_border_px)
+      .def_readwrite("seed", &EngineOptions::seed)
+      .def_readwrite("merge_delay_frames", &EngineOptions::merge_delay_frames)
+      .def_readwrite("local_bundle_keyframes", &EngineOptions::local_bundle_keyframes)
+      .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
+      .def_readwrite("map_id", &EngineOptions::map_id)
+      .def_readwrite("map_from_first_camera", &EngineOptions::map_from_first_camera);
+}
+
+void BindResult(py::module_& module) {
+  py::class_<TrackingResult>(module, "TrackingResult")
+      .def_readonly("timestamp_ns", &TrackingResult::timestamp_ns)
+      .def_property_readonly("state", [](const TrackingResult& result) { return static_cast<int>(result.state); })
+      .def_readonly("reason", &TrackingResult::reason)
+      .def_readonly("map_id", &TrackingResult::map_id)
+      .def_readonly("map_from_camera", &TrackingResult::map_from_camera)
+      .def_readonly("covariance", &TrackingResult::covariance)
+      .def_readonly("reference_keyframe_id", &TrackingResult::reference_keyframe_id)
+      .def_readonly("camera_from_reference", &TrackingResult::camera_from_reference)
+      .def_readonly("tracked_landmarks", &TrackingResult::tracked_landmarks)
+      .def_readonly("features", &TrackingResult::features)
+      .def_readonly("keyframe_inserted", &TrackingResult::keyframe_inserted)
+      .def_readonly("moving_unplaced", &TrackingResult::moving_unplaced)
+      .def_readonly("metric_scale", &TrackingResult::metric_scale)
+      .def_property_readonly("stage_ms", [](const TrackingResult& result) {
+        const StageTimes& times = result.stage_ms;
+        py::dict stages;
+        stages["extract"] = times.extract_ms;
+        stages["merge"] = times.merge_ms;
+        stages["match"] = times.match_ms;
+        stages["local_map"] = times.local_map_ms;
+        stages["mapping"] = times.mapping_ms;
+        return stages;
+      });
+}
+
+}  // namespace
+}  // namespace kinemap
+
+PYBIND11_MODULE(_engine, module) {
+  using namespace kinemap;
+  module.doc() = "Monocular SLAM: images and object masks in, poses and map arrays out.";
+  BindOptions(module);
+  BindResult(module);
+  py::class_<LockedEngine>(module, "Engine")
+      .def(py::init<const CameraModel&, const EngineOptions&>(), py::arg("camera"), py::arg("options"))
+      .def("begin_frame", &LockedEngine::BeginFrame, py::arg("timestamp_ns"), py::arg("image"))
+      .def("finish_frame", &LockedEngine::FinishFrame, py::arg("track_image").none(true), py::arg("object_ids"),
+           py::arg("categories"), py::arg("motion_states"), py::arg("masks_fresh"), py::arg("depth_m").none(true))
+      .def("flush", &LockedEngine::Flush)
+      .def("take_map_update", &LockedEngine::TakeMapUpdate);
+}

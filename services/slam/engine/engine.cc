@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+
+#include "tracking/frame_matcher.h"
+
+namespace kinemap {
+namespace {
+
+constexpr size_t kMostWaitingFrames = 60;
+constexpr int kLeastFilledInliers = 30;
+
+class Stopwatch {
+ public:
+  double ElapsedMs() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+const EngineOptions& Checked(const EngineOptions& options) {
+  options.Check();
+  return options;
+}
+
+LocalMapperOptions MapperOptions(const EngineOptions& options) {
+  LocalMapperOptions mapper;
+  mapper.merge_delay_frames = options.merge_delay_frames;
+  mapper.bundle.keyframes = options.local_bundle_keyframes;
+  return mapper;
+}
+
+void CheckSize(const char* name, const cv::Mat& image, const CameraModel& camera) {
+  if (image.cols == camera.width_px() && image.rows == camera.height_px()) return;
+  throw std::invalid_argument(std::string(name) + ": expected " + std::to_string(camera.width_px()) + "x" +
+                              std::to_string(camera.height_px()) + " pixels, got " + std::to_string(image.cols) + "x" +
+                              std::to_string(image.rows));
+}
+
+}  // namespace
+
+Engine::Engine(const CameraModel& camera, const EngineOptions& options)
+    : camera_(camera),
+      options_(Checked(options)),
+      scales_(options.pyramid_levels, options.pyramid_factor),
+      extractor_({options.features, options.fast_threshold, options.fast_threshold_low}, scales_),
+      initializer_({}, camera),
+      map_builder_(camera, scales_),
+      tracker_({}, camera),
+      keyframe_policy_({}),
+      mapper_(MapperOptions(options), camera) {
+  if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
+}
+
+void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image) {
+  CheckSize("image", image, camera_);
+  if (last_timestamp_ns_ && timestamp_ns <= *last_timestamp_ns_) {
+    throw std::invalid_argument("timestamp_ns: expected one after " + std::to_string(*last_timestamp_ns_) + ", got " +
+                                std::to_string(timestamp_ns));
+  }
+  const Stopwatch stopwatch;
+  FrameFeaturesPtr features = extractor_.Extract(image, camera_);
+  begun_ = BegunFrame{timestamp_ns, std::move(features), stopwatch.ElapsedMs()};
+}
+
+Frame Engine::MakeFrame(const FrameObjects& objects) {
+  Frame frame;
+  frame.timestamp_ns = begun_->timestamp_ns;
+  frame.features = begun_->features;
+  frame.labels =
+      ObjectLabels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh, options_.mask_border_px)
+          .LabelsOf(frame.features->keypoints);
+  frame.ForgetMatches();
+  return frame;
+}
+
+TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& depth_m) {
+  if (!begun_) throw std::logic_error("finish_frame: no frame was begun");
+  if (!objects.track_image.empty()) CheckSize("track_image", objects.track_image, camera_);
+  if (!depth_m.empty()) CheckSize("depth_m", depth_m, camera_);
+
+  ++frame_index_;
+  TrackingResult result;
+  result.timestamp_ns = begun_->timestamp_ns;
+  result.stage_ms.extract_ms = begun_->extract_ms;
+  result.map_id = options_.map_id;
+  result.features = begun_->features->size();
+  Frame frame = MakeFrame(objects);
+  last_timestamp_ns_ = begun_->timestamp_ns;
+  begun_.reset();
+  if (map_ == nullptr) {
+    Initialize(&frame, depth_m, &result);
+  } else {
+    const Stopwatch stopwatch;
+    mapper_.MergeIfDue(map_.get(), frame_index_);
+    result.stage_ms.merge_ms = stopwatch.ElapsedMs();
+    if (options_.stage == Stage::kMoving && objects.masks_fresh) {
+      object_states_.Update(objects.rows, frame.timestamp_ns, map_.get());
+    }
+    Track(&frame, depth_m, &result);
+  }
+  result.metric_scale = metric_scale_;
+  return result;
+}
+
+void Engine::Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* result) {
+  const Stopwatch stopwatch;
+  result->state = TrackingState::kInitializing;
+  RandomEngine random(options_.seed, frame->timestamp_ns);
+  const std::optional<InitialMap> initial = initializer_.Try(*frame, random);
+  result->reason = initializer_.reason();
+  if (initial) {
+    BuiltMap built = map_builder_.Build(options_.map_id, RigidTransform::FromMatrix(options_.map_from_first_camera),
+                                        *initial, *frame, depth_m);
+    result->reason = built.reason;
+    if (built.map != nullptr) {
+      map_ = std::move(built.map);
+      metric_scale_ = built.metric_scale;
+      *frame = std::move(built.current);
+      last_keyframe_index_ = frame_index_;
+      result->keyframe_inserted = true;
+      FillWaitingFrames(initial->reference, *frame);
+      std::optional<RigidTransform> previous;
+      if (!late_frames_.empty() && !waiting_.empty() &&
+          late_frames_.back().timestamp_ns == waiting_.back().timestamp_ns) {
+        const LateFramePose& late = late_frames_.back();
+        previous = late.camera_from_reference * map_->MapFromKeyframe(late.reference_keyframe_id).Inverse();
+      }
+      waiting_.clear();
+      tracker_.Start(*map_, *frame, previous);
+      result->state = TrackingState::kTracking;
+      PoseEstimate estimate = FramePoseSolver(camera_).Solve(*map_, frame);
+      result->tracked_landmarks = estimate.inliers;
+      ReportPose(*frame, estimate.information, result);
+    }
+  }
+  if (map_ == nullptr) {
+    waiting_.push_back(*frame);
+    if (waiting_.size() > kMostWaitingFrames) waiting_.pop_front();
+  }
+  result->stage_ms.match_ms = stopwatch.ElapsedMs();
+}
+
+void Engine::FillWaitingFrames(const Frame& first, const Frame& current) {
+  const LocalMapTracker local_map_tracker(camera_);
+  const double span_ns = static_cast<double>(current.timestamp_ns - first.timestamp_ns);
+  const RigidTransform first_from_map = map_->MapFromKeyframe(map_->first_keyframe_id()).Inverse();
+  const RigidTransform current_from_first = current.camera_from_map * first_from_map.Inverse();
+  const Eigen::AngleAxisd turn(current_from_first.rotation);
+  for (Frame& frame : waiting_) {
+    // The first guess lies on the screw between the two keyframes, or goes on before the first at the same speed.
+    const double part = static_cast<double>(frame.timestamp_ns - first.timestamp_ns) / span_ns;
+    const Eigen::AngleAxisd part_turn(part * turn.angle(), turn.axis());
+    frame.camera_from_map =
+        RigidTransform(Eigen::Quaterniond(part_turn), part * current_from_first.translation) * first_from_map;
+    frame.reference_keyframe_id = map_->first_keyframe_id();
+    frame.ForgetMatches();
+    if (ProjectKeyframe(*map_, camera_, map_->last_keyframe_id(), 15.0, kMaxHammingDistance, &frame) == 0) continue;
+    if (FramePoseSolver(camera_).Solve(*map_, &frame).inliers < kLeastFilledInliers) continue;
+    if (local_map_tracker.Track(map_.get(), 1.0, &frame).inliers < kLeastFilledInliers) continue;
+    late_frames_.push_back({frame.timestamp_ns, frame.reference_keyframe_id,
+                            frame.camera_from_map * map_->MapFromKeyframe(frame.reference_keyframe_id)});
+  }
+}
+
+void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result) {
+  const TrackedPose pose = tracker_.Track(map_.get(), frame);
+  result->stage_ms.match_ms = pose.match_ms;
+  result->stage_ms.local_map_ms = pose.local_map_ms;
+  result->state = pose.tracked ? TrackingState::kTracking : TrackingState::kLost;
+  result->reason = pose.reason;
+  result->tracked_landmarks = pose.estimate.inliers;
+  if (!pose.tracked) return;
+  if (NeedsKeyframe(*frame, pose.estimate.inliers)) {
+    const Stopwatch stopwatch;
+    const RigidTransform camera_from_map = frame->camera_from_map;
+    frame->reference_keyframe_id = mapper_.Insert(map_.get(), *frame, depth_m, frame_index_, &result->moving_unplaced);
+    frame->camera_from_map = camera_from_map;
+    last_keyframe_index_ = frame_index_;
+    tracker_.FollowKeyframe(*map_, frame->reference_keyframe_id);
+    result->keyframe_inserted = true;
+    result->stage_ms.mapping_ms = stopwatch.ElapsedMs();
+  }
+  ReportPose(*frame, pose.estimate.information, result);
+}
+
+bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
+  TrackingQuality quality;
+  quality.frames_since_relocalization = tracker_.frames_since_relocalization();
+  quality.frames_since_keyframe = static_cast<int>(frame_index_ - last_keyframe_index_);
+  quality.mapper_is_free = mapper_.IsFree();
+  quality.tracked = tracked;
+  // In a map of two keyframes no landmark has three observations yet.
+  const int min_observations = map_->live_keyframe_count() <= 2 ? 2 : 3;
+  quality.reference_tracked = map_->CountTracked(frame.reference_keyframe_id, min_observations);
+  return keyframe_policy_.NeedsKeyframe(quality);
+}
+
+void Engine::ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const {
+  result->map_from_camera = frame.camera_from_map.Inverse().Matrix();
+  result->reference_keyframe_id = frame.reference_keyframe_id;
+  result->camera_from_reference = (frame.camera_from_map * map_->MapFromKeyframe(frame.reference_keyframe_id)).Matrix();
+  const Matrix6d covariance = information.inverse();
+  if (covariance.allFinite()) result->covariance = covariance;
+}
+
+void Engine::Flush() {
+  if (map_ != nullptr) mapper_.Finish(map_.get());
+}
+
+MapUpdate Engine::TakeUpdate() {
+  const std::vector<LateFramePose> late_frames = std::move(late_frames_);
+  late_frames_.clear();
+  return TakeMapUpdate(map_.get(), late_frames);
+}
+
+}  // namespace kinemap

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "features/object_labels.h"
+
+namespace kinemap {
+
+/// What a caller may choose. The thresholds of each step are in that step's own options.
+struct EngineOptions {
+  Stage stage = Stage::kMoving;  ///< which objects' features stay out of tracking
+  int features = 2000;           ///< ORB features wanted a frame
+  int pyramid_levels = 8;
+  double pyramid_factor = 1.2;      ///< size ratio of neighbouring levels
+  int fast_threshold = 20;          ///< grey levels; corner detection
+  int fast_threshold_low = 7;       ///< where nothing is found at fast_threshold
+  int mask_border_px = 3;           ///< features this close to an object's outline belong to nobody
+  uint64_t seed = 0;                ///< of all random numbers, with the frame's timestamp
+  int merge_delay_frames = 2;       ///< bundle adjustment of keyframe k is merged at frame k + this, at least 1
+  int local_bundle_keyframes = 15;  ///< keyframes that move in a local bundle adjustment
+  int opencv_threads = 1;           ///< for the whole process; 0 leaves OpenCV as it is
+  int64_t map_id = 0;               ///< ids start at map_id << 32; 0 <= map_id < 2^31
+  Eigen::Matrix4d map_from_first_camera = Eigen::Matrix4d::Identity();  ///< pose of the first keyframe
+
+  /// Throws std::invalid_argument that names the option and its value.
+  void Check() const;
+};
+
+}  // namespace kinemap

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "features/object_labels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinemap {
+namespace {
+
+FeatureLabel LabelOfObject(Stage stage, MotionState state, bool masks_fresh) {
+  FeatureLabel label;
+  if (stage == Stage::kDynamic) {
+    label.role = FeatureRole::kMapped;
+    label.state = MotionState::kPotentiallyDynamic;
+    return label;
+  }
+  const bool decided = masks_fresh && (state == MotionState::kStatic || state == MotionState::kNonMoving ||
+                                       state == MotionState::kMoving);
+  if (!decided) {
+    label.role = FeatureRole::kMapped;
+    label.state = MotionState::kUndecided;
+  } else if (state == MotionState::kMoving) {
+    label.role = FeatureRole::kSighted;
+    label.state = MotionState::kMoving;
+  } else {
+    label.role = FeatureRole::kTracked;
+    label.state = MotionState::kNonMoving;
+  }
+  return label;
+}
+
+}  // namespace
+
+ObjectLabels::ObjectLabels(Stage stage, const cv::Mat& track_image, const std::vector<ObjectRow>& rows,
+                           bool masks_fresh, int border_px)
+    : stage_(stage),
+      track_image_(track_image),
+      unlisted_(LabelOfObject(stage, MotionState::kUndecided, masks_fresh)),
+      border_px_(border_px) {
+  for (const ObjectRow& row : rows) {
+    FeatureLabel label = LabelOfObject(stage, row.state, masks_fresh);
+    label.object_id = row.id;
+    label.category = row.category;
+    label_of_object_[row.id] = label;
+  }
+}
+
+uint32_t ObjectLabels::ObjectAt(int column, int row) const {
+  return static_cast<uint32_t>(track_image_.at<int32_t>(row, column));
+}
+
+bool ObjectLabels::IsBorder(int column, int row, uint32_t object_id) const {
+  const int first_row = std::max(0, row - border_px_), last_row = std::min(track_image_.rows - 1, row + border_px_);
+  const int first_column = std::max(0, column - border_px_);
+  const int last_column = std::min(track_image_.cols - 1, column + border_px_);
+  for (int r = first_row; r <= last_row; ++r) {
+    for (int c = first_column; c <= last_column; ++c) {
+      if (ObjectAt(c, r) != object_id) return true;
+    }
+  }
+  return false;
+}
+
+FeatureLabel ObjectLabels::LabelOf(const Keypoint& keypoint) const {
+  if (stage_ == Stage::kBase || track_image_.empty()) return {};
+  const int column = std::clamp(static_cast<int>(std::lround(keypoint.raw_px.x())), 0, track_image_.cols - 1);
+  const int row = std::clamp(static_cast<int>(std::lround(keypoint.raw_px.y())), 0, track_image_.rows - 1);
+  const uint32_t object_id = ObjectAt(column, row);
+  FeatureLabel label;
+  if (object_id != 0) {
+    const auto known = label_of_object_.find(object_id);
+    label = known != label_of_object_.end() ? known->second : unlisted_;
+    label.object_id = object_id;
+  }
+  if (IsBorder(column, row, object_id)) label.role = FeatureRole::kIgnored;
+  return label;
+}
+
+std::vector<FeatureLabel> ObjectLabels::LabelsOf(const std::vector<Keypoint>& keypoints) const {
+  std::vector<FeatureLabel> labels;
+  labels.reserve(keypoints.size());
+  for (const Keypoint& keypoint : keypoints) labels.push_back(LabelOf(keypoint));
+  return labels;
+}
+
+}  // namespace kinemap

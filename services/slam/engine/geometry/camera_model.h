@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace kinemap {
+
+/// A pinhole camera with the distortion of Brown and Conrady (k1, k2, p1, p2, k3; OpenCV's order).
+/// Camera frame: x right, y down, z forward. Pixels have their centre at integer coordinates.
+class CameraModel {
+ public:
+  /// `distortion` holds 0, 4 or 5 coefficients. Throws std::invalid_argument when a size or a focal length is not
+  /// positive, a value is not finite or the number of coefficients is another.
+  CameraModel(int width_px, int height_px, double fx_px, double fy_px, double cx_px, double cy_px,
+              const std::vector<double>& distortion = {});
+
+  int width_px() const { return width_px_; }
+  int height_px() const { return height_px_; }
+  double fx_px() const { return fx_px_; }
+  double fy_px() const { return fy_px_; }
+  double cx_px() const { return cx_px_; }
+  double cy_px() const { return cy_px_; }
+  bool is_distorted() const { return is_distorted_; }
+
+  /// The 3x3 calibration matrix of the undistorted camera.
+  Eigen::Matrix3d Intrinsics() const;
+
+  /// Undistorted pixel of a point in the camera frame (z > 0 is the caller's concern).
+  Eigen::Vector2d Project(const Eigen::Vector3d& point_in_camera) const {
+    const double inverse_depth = 1.0 / point_in_camera.z();
+    return {fx_px_ * point_in_camera.x() * inverse_depth + cx_px_,
+            fy_px_ * point_in_camera.y() * inverse_depth + cy_px_};
+  }
+
+  /// Derivative of Project by the point (2x3).
+  Eigen::Matrix<double, 2, 3> ProjectionJacobian(const Eigen::Vector3d& point_in_camera) const;
+
+  /// Ray of an undistorted pixel, scaled to z = 1.
+  Eigen::Vector3d Ray(const Eigen::Vector2d& pixel_px) const {
+    return {(pixel_px.x() - cx_px_) / fx_px_, (pixel_px.y() - cy_px_) / fy_px_, 1.0};
+  }
+
+  /// Raw pixel -> pixel of the undistorted camera, by fixed-point iteration.
+  Eigen::Vector2d Undistort(const Eigen::Vector2d& raw_px) const;
+
+  /// Undistorted pixel -> raw pixel.
+  Eigen::Vector2d Distort(const Eigen::Vector2d& pixel_px) const;
+
+  /// Smallest box that holds the undistorted image: low and high corner.
+  const Eigen::Vector2d& low_corner_px() const { return low_corner_px_; }
+  const Eigen::Vector2d& high_corner_px() const { return high_corner_px_; }
+
+  bool Contains(const Eigen::Vector2d& pixel_px) const {
+    return (pixel_px.array() >= low_corner_px_.array()).all() && (pixel_px.array() < high_corner_px_.array()).all();
+  }
+
+ private:
+  Eigen::Vector2d DistortNormalized(const Eigen::Vector2d& normalized) const;
+
+  int width_px_, height_px_;
+  double fx_px_, fy_px_, cx_px_, cy_px_;
+  double k1_ = 0, k2_ = 0, p1_ = 0, p2_ = 0, k3_ = 0;
+  bool is_distorted_ = false;
+  Eigen::Vector2d low_corner_px_, high_corner_px_;
+};
+
+}  // namespace kinemap

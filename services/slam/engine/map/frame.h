@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "features/frame_features.h"
+#include "features/object_labels.h"
+#include "geometry/rigid_transform.h"
+#include "map/ids.h"
+
+namespace kinemap {
+
+/// One image on its way through the tracker.
+struct Frame {
+  int64_t timestamp_ns = 0;
+  FrameFeaturesPtr features;
+  std::vector<FeatureLabel> labels;      ///< one a keypoint
+  std::vector<LandmarkId> landmark_ids;  ///< one a keypoint, kNoId where it matches none
+  RigidTransform camera_from_map;
+  KeyframeId reference_keyframe_id = kNoId;
+
+  int size() const { return features->size(); }
+  bool IsFree(int keypoint) const {
+    return landmark_ids[keypoint] == kNoId && labels[keypoint].role == FeatureRole::kTracked;
+  }
+  void ForgetMatches() { landmark_ids.assign(features->size(), kNoId); }
+};
+
+}  // namespace kinemap

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "features/frame_features.h"
+#include "features/object_labels.h"
+#include "geometry/rigid_transform.h"
+#include "map/ids.h"
+
+namespace kinemap {
+
+/// A frame that stays in the map. Once culled it keeps nothing but its pose, relative to its parent.
+struct Keyframe {
+  KeyframeId id = kNoId;
+  int64_t timestamp_ns = 0;
+  FrameFeaturesPtr features;             ///< null once culled
+  std::vector<FeatureLabel> labels;      ///< one a keypoint
+  std::vector<LandmarkId> landmark_ids;  ///< one a keypoint, kNoId where it observes none
+  RigidTransform map_from_keyframe;      ///< of a culled keyframe: ask SlamMap::MapFromKeyframe
+  bool culled = false;
+  KeyframeId parent_id = kNoId;         ///< of a culled keyframe
+  RigidTransform parent_from_keyframe;  ///< of a culled keyframe
+};
+
+}  // namespace kinemap

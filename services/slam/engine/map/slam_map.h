@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "features/pyramid_scales.h"
+#include "map/covisibility_graph.h"
+#include "map/frame.h"
+#include "map/ids.h"
+#include "map/keyframe.h"
+#include "map/landmark.h"
+
+namespace kinemap {
+
+/// What changed since it was last asked. Ids ascend.
+struct MapChanges {
+  std::vector<KeyframeId> keyframes;
+  std::vector<LandmarkId> landmarks;
+  std::vector<LandmarkId> removed_landmarks;
+};
+
+/// Keyframes, landmarks and what ties them together. Landmarks sit in the frame of their anchor keyframe, so that
+/// moving a keyframe moves them too. One thread at a time.
+class SlamMap {
+ public:
+  SlamMap(int64_t map_id, const PyramidScales& scales);
+
+  int64_t map_id() const { return first_id_ >> 32; }
+  const PyramidScales& scales() const { return scales_; }
+  const CovisibilityGraph& covisibility() const { return covisibility_; }
+
+  // Keyframes.
+  /// Takes over the frame's pose, features and matches, and observes the matched landmarks.
+  Keyframe& InsertKeyframe(const Frame& frame);
+  const Keyframe& keyframe(KeyframeId id) const { return *keyframes_.at(id - first_id_); }
+  KeyframeId first_keyframe_id() const { return first_id_; }
+  KeyframeId last_keyframe_id() const { return first_id_ + static_cast<int64_t>(keyframes_.size()) - 1; }
+  int keyframe_count() const { return static_cast<int>(keyframes_.size()); }
+  int live_keyframe_count() const { return live_keyframes_; }
+  std::vector<KeyframeId> LiveKeyframes() const;
+  /// The keyframe itself, or the first of its parents that was not culled.
+  KeyframeId LiveKeyframe(KeyframeId id) const;
+  /// Also of a culled keyframe, through its parents.
+  RigidTransform MapFromKeyframe(KeyframeId id) const;
+  void SetKeyframePose(KeyframeId id, const RigidTransform& map_from_keyframe);
+  /// Drops features and observations; the pose stays, relative to the keyframe that shares most with it, where the
+  /// landmarks anchored here go too. Landmarks left with fewer than two observations are removed.
+  void CullKeyframe(KeyframeId id);
+  /// Recounts the landmarks shared with others; only those that may constrain poses count.
+  void UpdateCovisibility(KeyframeId id);
+
+  // Landmarks.
+  Landmark& CreateLandmark(const Eigen::Vector3d& position_in_map, KeyframeId anchor_id, const FeatureLabel& label);
+  /// Null when it was removed; the survivor when it was fused into another.
+  Landmark* FindLandmark(LandmarkId id);
+  const Landmark* FindLandmark(LandmarkId id) const { return const_cast<SlamMap*>(this)->FindLandmark(id); }
+  int landmark_count() const { return live_landmarks_; }
+  /// Ids of all landmarks that were not removed, ascending.
+  std::vector<LandmarkId> LiveLandmarks() const;
+  Eigen::Vector3d PositionInMap(const Landmark& landmark) const;
+  void SetPositionInMap(Landmark* landmark, const Eigen::Vector3d& position_in_map);
+  void Observe(Landmark* landmark, KeyframeId keyframe_id, int keypoint);
+  /// Removes the landmark with its last but one observation.
+  void EraseObservation(Landmark* landmark, KeyframeId keyframe_id);
+  void RemoveLandmark(LandmarkId id);
+  /// All observations of `from` become those of `into`; `from` is removed.
+  void FuseLandmarks(LandmarkId from, LandmarkId into);
+  /// Descriptor, from the observations.
+  void UpdateDescriptor(Landmark* landmark);
+  /// Viewing direction and range of distances, from the observations and poses.
+  void UpdateViewRange(Landmark* landmark);
+  /// Label by the majority of its observations, the newest deciding a tie.
+  void UpdateLabel(Landmark* landmark);
+  void MarkChanged(const Landmark& landmark) { changed_landmarks_.insert(landmark.id); }
+
+  /// Trackable landmarks of a keyframe that at least `min_observations` keyframes see.
+  int CountTracked(KeyframeId id, int min_observations) const;
+  /// Median depth of a keyframe's trackable landmarks along its optical axis; 0 when it has none.
+  double MedianDepth(KeyframeId id) const;
+
+  MapChanges TakeChanges();
+
+ private:
+  Keyframe& mutable_keyframe(KeyframeId id) { return *keyframes_.at(id - first_id_); }
+  void Reanchor(Landmark* landmark, KeyframeId anchor_id);
+
+  int64_t first_id_;
+  PyramidScales scales_;
+  CovisibilityGraph covisibility_;
+  std::vector<std::unique_ptr<Keyframe>> keyframes_;  // index = id - first_id_
+  std::vector<std::unique_ptr<Landmark>> landmarks_;  // likewise; null once removed
+  std::vector<LandmarkId> fused_into_;                // likewise; kNoId when not fused
+  int live_keyframes_ = 0, live_landmarks_ = 0;
+  std::set<KeyframeId> changed_keyframes_;
+  std::set<LandmarkId> changed_landmarks_, removed_landmarks_, reported_landmarks_;
+};
+
+}  // namespace kinemap

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "map/slam_map.h"
+
+namespace kinemap {
+
+/// Puts every new landmark on trial for its first keyframes: it must be found in a quarter of the frames that should
+/// see it and be observed from three keyframes (Mur-Artal, Montiel and Tardos 2015, section VI-B).
+class LandmarkCuller {
+ public:
+  void Add(const std::vector<LandmarkId>& landmarks);
+
+  /// Removes what failed, with `newest` the keyframe just inserted.
+  void Cull(SlamMap* map, KeyframeId newest);
+
+ private:
+  std::vector<LandmarkId> on_trial_;
+};
+
+}  // namespace kinemap

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/landmark_fuser.h"
+
+#include <set>
+
+#include "map/landmark_search.h"
+
+namespace kinemap {
+namespace {
+constexpr double kRadiusPx = 3.0;
+constexpr double kReprojectionBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
+}  // namespace
+
+std::vector<KeyframeId> LandmarkFuser::Targets(const SlamMap& map, KeyframeId keyframe_id) const {
+  std::set<KeyframeId> targets;
+  for (const KeyframeId neighbor : map.covisibility().Neighbors(keyframe_id, options_.neighbors)) {
+    targets.insert(neighbor);
+    for (const KeyframeId second : map.covisibility().Neighbors(neighbor, options_.second_neighbors)) {
+      if (second != keyframe_id) targets.insert(second);
+    }
+  }
+  return {targets.begin(), targets.end()};
+}
+
+void LandmarkFuser::FuseInto(SlamMap* map, KeyframeId target_id, const std::vector<LandmarkId>& landmarks) const {
+  const Keyframe& target = map->keyframe(target_id);
+  const RigidTransform target_from_map = target.map_from_keyframe.Inverse();
+  const PyramidScales& scales = map->scales();
+  KeypointSearch search;
+  for (const LandmarkId id : landmarks) {
+    Landmark* landmark = map->FindLandmark(id);
+    if (landmark == nullptr || landmark->observations.empty() || landmark->observations.count(target_id) > 0) continue;
+    const auto view = PredictView(*landmark, map->PositionInMap(*landmark), target_from_map,
+                                  target.map_from_keyframe.translation, camera_, scales);
+    if (!view) continue;
+    const SearchWindow window{view->pixel_px, kRadiusPx * scales.scale(view->octave), view->octave - 1, view->octave};
+    const int best =
+        search.FindBest(*target.features, landmark->descriptor, window, kStrictHammingDistance, 1.0, [&](int j) {
+          const Keypoint& keypoint = target.features->keypoints[j];
+          return landmark->IsCompatibleWith(target.labels[j]) &&
+                 (keypoint.pixel_px - view->pixel_px).squaredNorm() * scales.inverse_variance(keypoint.octave) <
+                     kReprojectionBound;
+        });
+    if (best < 0) continue;
+    Landmark* other = map->FindLandmark(target.landmark_ids[best]);
+    if (other == nullptr) {
+      map->Observe(landmark, target_id, best);
+    } else if (other->IsTrackable() == landmark->IsTrackable()) {
+      const bool other_stays = other->observations.size() > landmark->observations.size();
+      map->FuseLandmarks(other_stays ? landmark->id : other->id, other_stays ? other->id : landmark->id);
+    }
+  }
+}
+
+void LandmarkFuser::Fuse(SlamMap* map, KeyframeId keyframe_id) const {
+  const std::vector<KeyframeId> targets = Targets(*map, keyframe_id);
+  const Keyframe& keyframe = map->keyframe(keyframe_id);
+  const auto landmarks_of = [&](const Keyframe& source, std::set<LandmarkId>* ids) {
+    for (const LandmarkId id : source.landmark_ids) {
+      if (id != kNoId) ids->insert(id);
+    }
+  };
+  std::set<LandmarkId> own, theirs;
+  landmarks_of(keyframe, &own);
+  for (const KeyframeId target : targets) FuseInto(map, target, {own.begin(), own.end()});
+  for (const KeyframeId target : targets) landmarks_of(map->keyframe(target), &theirs);
+  FuseInto(map, keyframe_id, {theirs.begin(), theirs.end()});
+  for (const LandmarkId id : keyframe.landmark_ids) {
+    Landmark* landmark = map->FindLandmark(id);
+    if (landmark == nullptr) continue;
+    map->UpdateDescriptor(landmark);
+    map->UpdateViewRange(landmark);
+  }
+  map->UpdateCovisibility(keyframe_id);
+}
+
+}  // namespace kinemap

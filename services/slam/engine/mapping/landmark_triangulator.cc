@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapping/landmark_triangulator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/triangulation.h"
+
+namespace kinemap {
+namespace {
+
+constexpr double kEpipolarBound = 3.841;      // 95 % of chi-squared, one degree of freedom
+constexpr double kReprojectionBound = 5.991;  // two degrees of freedom
+constexpr double kEpipoleBound = 100;         // squared pixels: near the epipole a line tells nothing
+constexpr double kWindowPx = 10;
+constexpr double kScaleTolerance = 1.5;  // times one octave's factor
+
+bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
+  if (a.role != b.role) return false;
+  return a.role == FeatureRole::kTracked || (a.role == FeatureRole::kMapped && a.object_id == b.object_id);
+}
+
+}  // namespace
+
+struct LandmarkTriangulator::Pair {
+  const Keyframe& first;
+  const Keyframe& second;
+  const PyramidScales& scales;
+  RigidTransform second_from_first;
+  Eigen::Matrix3d fundamental;
+  Eigen::Vector2d epipole_px;  // the first camera's centre in the second image
+  bool has_epipole;            // false when it lies behind the second camera
+  double nearest_depth;
+};
+
+std::vector<LandmarkId> LandmarkTriangulator::Triangulate(SlamMap* map, KeyframeId keyframe_id) const {
+  const Keyframe& first = map->keyframe(keyframe_id);
+  const double median_depth = map->MedianDepth(keyframe_id);
+  std::vector<LandmarkId> made;
+  for (const KeyframeId neighbor : map->covisibility().Neighbors(keyframe_id, options_.neighbors)) {
+    const Keyframe& second = map->keyframe(neighbor);
+    const RigidTransform second_from_first = second.map_from_keyframe.Inverse() * first.map_from_keyframe;
+    const double baseline = second_from_first.translation.norm();
+    if (baseline < options_.min_baseline_ratio * map->MedianDepth(neighbor)) continue;
+    const bool has_epipole = second_from_first.translation.z() > 1e-9 * baseline;
+    const Pair pair{first,
+                    second,
+                    map->scales(),
+                    second_from_first,
+                    FundamentalFromMotion(second_from_first, camera_.Intrinsics()),
+                    has_epipole ? camera_.Project(second_from_first.translation) : Eigen::Vector2d::Zero(),
+                    has_epipole,
+                    options_.nearest_depth_ratio * median_depth};
+    const std::vector<LandmarkId> of_pair = TriangulatePair(map, pair);
+    made.insert(made.end(), of_pair.begin(), of_pair.end());
+  }
+  return made;
+}
+
+int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::vector<bool>& taken) const {
+  const Keypoint& point = pair.first.features->keypoints[keypoint];
+  const Descriptor& descriptor = pair.first.features->descriptors[keypoint];
+  // The point lies on the ray between the nearest depth (in both cameras) and infinity; its image is a segment.
+  const Eigen::Vector3d direction = pair.second_from_first.rotation * camera_.Ray(point.pixel_px);
+  const Eigen::Vector3d& offset = pair.second_from_first.translation;
+  if (direction.z() <= 1e-6) return -1;
+  const double nearest = std::max(pair.nearest_depth, (pair.nearest_depth - offset.z()) / direction.z());
+  const Eigen::Vector2d near_px = camera_.Project(nearest * direction + offset);
+  const Eigen::Vector2d far_px = camera_.Project(direction);
+  const Eigen::Vector2d segment = near_px - far_px;
+  const int steps = static_cast<int>(std::ceil(segment.cwiseAbs().maxCoeff() / (2 * kWindowPx)));
+  int best = -1, best_distance = kStrictHammingDistance;
+  std::vector<int> nearby;
+  for (int step = 0; step <= steps; ++step) {
+    const Eigen::Vector2d center = far_px + segment * (steps == 0 ? 0.0 : static_cast<double>(step) / steps);
+    if (!camera_.Contains(center)) continue;
+    pair.second.features->grid.FindNear(center, kWindowPx, 0, pair.scales.levels(), &nearby);
+    for (const int j : nearby) {
+      if (taken[j] || !MayMatch(pair.first.labels[keypoint], pair.second.labels[j])) continue;
+      const int distance = HammingDistance(descriptor, pair.second.features->descriptors[j]);
+      if (distance >= best_distance) continue;
+      const Keypoint& candidate = pair.second.features->keypoints[j];
+      const double scale = pair.scales.scale(candidate.octave);
+      if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) continue;
+      if (SquaredEpipolarDistance(pair.fundamental, point.pixel_px, candidate.pixel_px) >=
+          kEpipolarBound * scale * scale) {
+        continue;
+      }
+      best = j;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+bool LandmarkTriangulator::PointOfMatch(const SlamMap& map, const Pair& pair, int keypoint, int match,
+                                        Eigen::Vector3d* in_first) const {
+  const PyramidScales& scales = map.scales();
+  const Keypoint& a = pair.first.features->keypoints[keypoint];
+  const Keypoint& b = pair.second.features->keypoints[match];
+  const Eigen::Vector3d ray_1 = camera_.Ray(a.pixel_px), ray_2 = camera_.Ray(b.pixel_px);
+  const double cosine = (pair.second_from_first.rotation * ray_1).normalized().dot(ray_2.normalized());
+  if (cosine <= 0 || cosine >= options_.max_parallax_cosine) return false;
+  const Eigen::Vector3d point = TriangulateTwoRays(pair.second_from_first, ray_1, ray_2);
+  if (!point.allFinite() || point.z() <= 0) return false;
+  const Eigen::Vector3d in_second = pair.second_from_first * point;
+  if (in_second.z() <= 0) return false;
+  const auto error = [&](const Eigen::Vector3d& in_camera, const Keypoint& keypoint_of) {
+    return (camera_.Project(in_camera) - keypoint_of.pixel_px).squaredNorm() *
+           scales.inverse_variance(keypoint_of.octave);
+  };
+  if (error(point, a) > kReprojectionBound || error(in_second, b) > kReprojectionBound) return false;
+  // The ratio of the distances must be that of the octaves.
+  const double distance_ratio = in_second.norm() / point.norm();
+  const double octave_ratio = scales.scale(a.octave) / scales.scale(b.octave);
+  const double tolerance = kScaleTolerance * (scales.levels() > 1 ? scales.scale(1) : 1.2);
+  if (distance_ratio * tolerance < octave_ratio || distance_ratio > octave_ratio * tolerance) return false;
+  *in_first = point;
+  return true;
+}
+
+std::vector<LandmarkId> LandmarkTriangulator::TriangulatePair(SlamMap* map, const Pair& pair) const {
+  std::vector<bool> taken(pair.second.features->size());
+  for (size_t j = 0; j < taken.size(); ++j) taken[j] = pair.second.landmark_ids[j] != kNoId;
+  std::vector<LandmarkId> made;
+  for (int i = 0; i < pair.first.features->size(); ++i) {
+    const FeatureRole role = pair.first.labels[i].role;
+    if (pair.first.landmark_ids[i] != kNoId || (role != FeatureRole::kTracked && role != FeatureRole::kMapped))
+      continue;
+    const int match = FindMatch(pair, i, taken);
+    Eigen::Vector3d in_first;
+    if (match < 0 || !PointOfMatch(*map, pair, i, match, &in_first)) continue;
+    taken[match] = true;
+    Landmark& landmark =
+        map->CreateLandmark(pair.first.map_from_keyframe * in_first, pair.first.id, pair.first.labels[i]);
+    map->Observe(&landmark, pair.first.id, i);
+    map->Observe(&landmark, pair.second.id, match);
+    map->UpdateDescriptor(&landmark);
+    map->UpdateViewRange(&landmark);
+    made.push_back(landmark.id);
+  }
+  return made;
+}
+
+}  // namespace kinemap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "mapping/keyframe_culler.h"
+#include "mapping/landmark_culler.h"
+#include "mapping/landmark_fuser.h"
+#include "mapping/landmark_triangulator.h"
+#include "mapping/local_bundle_adjuster.h"
+#include "mapping/merge_slot.h"
+#include "mapping/moving_landmark_placer.h"
+
+namespace kinemap {
+
+struct LocalMapperOptions {
+  TriangulatorOptions triangulator;
+  FuserOptions fuser;
+  LocalBundleOptions bundle;
+  int merge_delay_frames = 2;  ///< bundle adjustment of the keyframe at frame k is merged at frame k + this
+};
+
+/// Everything that happens around a keyframe: culling, triangulation and fusion at once, bundle adjustment in the
+/// background, merged a fixed number of frames later.
+class LocalMapper {
+ public:
+  LocalMapper(const LocalMapperOptions& options, const CameraModel& camera);
+
+  bool IsFree() const { return slot_.IsFree(); }
+
+  /// Makes a keyframe of the frame. Returns its id; `unplaced` gets the moving features without a place.
+  KeyframeId Insert(SlamMap* map, const Frame& frame, const cv::Mat& depth_m, int64_t frame_index, int* unplaced);
+
+  /// Merges the background's solution when its frame has come, and culls redundant keyframes.
+  void MergeIfDue(SlamMap* map, int64_t frame_index);
+
+  /// Merges what is pending, whatever frame it is due, and adjusts the newest keyframe's surroundings once more.
+  void Finish(SlamMap* map);
+
+ private:
+  void Merge(SlamMap* map);
+
+  LocalMapperOptions options_;
+  CameraModel camera_;
+  LandmarkTriangulator triangulator_;
+  LandmarkFuser fuser_;
+  LandmarkCuller landmark_culler_;
+  KeyframeCuller keyframe_culler_;
+  LocalBundleAdjuster bundle_adjuster_;
+  MovingLandmarkPlacer moving_placer_;
+  MergeSlot slot_;
+  KeyframeId newest_ = kNoId;
+};
+
+}  // namespace kinemap

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optimization/bundle_adjustment.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "optimization/reprojection_cost.h"
+
+namespace kinemap {
+namespace {
+
+constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
+
+using PoseBlock = std::array<double, kPoseSize>;
+
+void Solve(const CameraModel& camera, bool robust, int iterations, BundleProblem* bundle) {
+  std::vector<PoseBlock> poses(bundle->cameras.size());
+  for (size_t i = 0; i < poses.size(); ++i) WritePose(bundle->cameras[i].camera_from_map, poses[i].data());
+
+  PoseManifold manifold;
+  ceres::HuberLoss huber(std::sqrt(kOutlierBound));
+  ceres::Problem::Options problem_options;
+  problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_options.disable_all_safety_checks = true;
+  ceres::Problem problem(problem_options);
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  std::vector<bool> camera_used(poses.size(), false), point_used(bundle->points.size(), false);
+  bool has_free_camera = false;
+  for (const BundleObservation& observation : bundle->observations) {
+    if (observation.outlier) continue;
+    double* pose = poses[observation.camera].data();
+    double* point = bundle->points[observation.point].position_in_map.data();
+    problem.AddResidualBlock(
+        new ReprojectionCost(camera, observation.pixel_px, std::sqrt(observation.inverse_variance)),
+        robust ? &huber : nullptr, pose, point);
+    if (!camera_used[observation.camera]) {
+      camera_used[observation.camera] = true;
+      problem.SetManifold(pose, &manifold);
+      ordering->AddElementToGroup(pose, 1);
+      if (bundle->cameras[observation.camera].fixed) {
+        problem.SetParameterBlockConstant(pose);
+      } else {
+        has_free_camera = true;
+      }
+    }
+    if (!point_used[observation.point]) {
+      point_used[observation.point] = true;
+      ordering->AddElementToGroup(point, 0);
+    }
+  }
+  if (!has_free_camera) return;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_ordering = ordering;
+  options.max_num_iterations = iterations;
+  options.num_threads = 1;
+  options.function_tolerance = 1e-5;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (!bundle->cameras[i].fixed) bundle->cameras[i].camera_from_map = ReadPose(poses[i].data());
+  }
+}
+
+void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
+  for (BundleObservation& observation : bundle->observations) {
+    const Eigen::Vector3d point =
+        bundle->cameras[observation.camera].camera_from_map * bundle->points[observation.point].position_in_map;
+    const double squared = (camera.Project(point) - observation.pixel_px).squaredNorm() * observation.inverse_variance;
+    observation.outlier = point.z() <= 0 || !(squared <= kOutlierBound);
+  }
+}
+
+}  // namespace
+
+void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem) {
+  Solve(camera, true, options.robust_iterations, problem);
+  MarkOutliers(camera, problem);
+  if (options.final_iterations == 0) return;
+  Solve(camera, false, options.final_iterations, problem);
+  MarkOutliers(camera, problem);
+}
+
+}  // namespace kinemap

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/camera_model.h"
+#include "geometry/rigid_transform.h"
+#include "map/ids.h"
+
+namespace kinemap {
+
+struct BundleCamera {
+  KeyframeId keyframe_id;
+  RigidTransform camera_from_map;
+  bool fixed;
+};
+
+struct BundlePoint {
+  LandmarkId landmark_id;
+  Eigen::Vector3d position_in_map;
+};
+
+struct BundleObservation {
+  int camera;  ///< index
+  int point;   ///< index
+  Eigen::Vector2d pixel_px;
+  double inverse_variance;  ///< 1 / px^2
+  bool outlier = false;
+};
+
+/// A copy of part of the map, so that it can be solved in another thread.
+struct BundleProblem {
+  std::vector<BundleCamera> cameras;
+  std::vector<BundlePoint> points;
+  std::vector<BundleObservation> observations;
+};
+
+struct BundleOptions {
+  int robust_iterations = 5;  ///< with Huber's loss, before outliers are left out
+  int final_iterations = 5;   ///< quadratic, over the rest
+};
+
+/// Minimises the reprojection error over the cameras that are not fixed and all points, in place, and marks the
+/// outliers. Bounded by iterations, never by time, on one thread: the same problem gives the same bytes.
+void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem);
+
+}  // namespace kinemap

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optimization/pose_optimizer.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace kinemap {
+namespace {
+
+constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
+constexpr int kRounds = 4;
+constexpr int kRobustRounds = 2;
+constexpr int kIterations = 10;
+constexpr int kLeastObservations = 3;
+constexpr double kBehindCamera = 1e9;
+
+}  // namespace
+
+struct PoseOptimizer::NormalEquations {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double cost = 0;
+};
+
+PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& camera_from_map,
+                                                        const std::vector<PoseObservation>& observations,
+                                                        const std::vector<bool>& inlier, bool robust) const {
+  NormalEquations equations;
+  const Eigen::Matrix3d rotation = camera_from_map.rotation.toRotationMatrix();
+  const double huber = std::sqrt(kOutlierBound);
+  for (size_t i = 0; i < observations.size(); ++i) {
+    if (!inlier[i]) continue;
+    const Eigen::Vector3d point = rotation * observations[i].point_in_map + camera_from_map.translation;
+    if (point.z() <= 0) {
+      equations.cost += kBehindCamera;
+      continue;
+    }
+    const Eigen::Vector2d error = camera_.Project(point) - observations[i].pixel_px;
+    const double squared = error.squaredNorm() * observations[i].inverse_variance;
+    double weight = observations[i].inverse_variance;
+    if (robust && squared > kOutlierBound) {
+      equations.cost += 2 * huber * std::sqrt(squared) - kOutlierBound;
+      weight *= huber / std::sqrt(squared);
+    } else {
+      equations.cost += squared;
+    }
+    Eigen::Matrix<double, 2, 6> jacobian;
+    const Eigen::Matrix<double, 2, 3> projection = camera_.ProjectionJacobian(point);
+    jacobian.leftCols<3>() = projection;
+    jacobian.rightCols<3>() = -projection * CrossMatrix(point);
+    equations.hessian.noalias() += weight * jacobian.transpose() * jacobian;
+    equations.gradient.noalias() += weight * jacobian.transpose() * error;
+  }
+  return equations;
+}
+
+PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_map,
+                                     const std::vector<PoseObservation>& observations) const {
+  PoseEstimate estimate;
+  estimate.camera_from_map = initial_camera_from_map;
+  estimate.inlier.assign(observations.size(), true);
+  if (observations.size() < kLeastObservations) {
+    estimate.inlier.assign(observations.size(), false);
+    return estimate;
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    const bool robust = round < kRobustRounds;
+    double damping = 1e-6;
+    NormalEquations equations = Linearize(estimate.camera_from_map, observations, estimate.inlier, robust);
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Matrix6d damped = equations.hessian;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += 1e-9;
+      const Vector6d step = damped.ldlt().solve(-equations.gradient);
+      if (!step.allFinite()) break;
+      const RigidTransform moved = estimate.camera_from_map.PerturbedInTarget(step);
+      const NormalEquations next = Linearize(moved, observations, estimate.inlier, robust);
+      if (next.cost > equations.cost) {
+        damping = std::max(damping, 1e-6) * 10;
+        if (damping > 1e4) break;
+        continue;
+      }
+      const bool converged = equations.cost - next.cost < 1e-6 * equations.cost;
+      estimate.camera_from_map = moved;
+      equations = next;
+      damping *= 0.1;
+      if (converged) break;
+    }
+    estimate.inliers = 0;
+    for (size_t i = 0; i < observations.size(); ++i) {
+      const Eigen::Vector3d point = estimate.camera_from_map * observations[i].point_in_map;
+      const double squared =
+          (camera_.Project(point) - observations[i].pixel_px).squaredNorm() * observations[i].inverse_variance;
+      estimate.inlier[i] = point.z() > 0 && squared <= kOutlierBound;
+      estimate.inliers += estimate.inlier[i] ? 1 : 0;
+    }
+    if (estimate.inliers < kLeastObservations) return estimate;
+  }
+  estimate.information = Linearize(estimate.camera_from_map, observations, estimate.inlier, false).hessian;
+  return estimate;
+}
+
+}  // namespace kinemap

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/camera_model.h"
+#include "geometry/rigid_transform.h"
+
+namespace kinemap {
+
+struct PoseObservation {
+  Eigen::Vector3d point_in_map;
+  Eigen::Vector2d pixel_px;
+  double inverse_variance;  ///< 1 / px^2
+};
+
+struct PoseEstimate {
+  RigidTransform camera_from_map;
+  std::vector<bool> inlier;  ///< one an observation
+  int inliers = 0;
+  /// Inverse covariance of a step (translation, rotation vector) in the camera frame, from the inliers.
+  Matrix6d information = Matrix6d::Zero();
+};
+
+/// Pose of one camera against fixed points: Levenberg-Marquardt on the reprojection error with Huber's loss; after
+/// each of four rounds observations beyond the 95 % bound of chi-squared are left out (and may come back), and the last
+/// two rounds are quadratic (Mur-Artal and Tardos 2015, section V).
+class PoseOptimizer {
+ public:
+  explicit PoseOptimizer(const CameraModel& camera) : camera_(camera) {}
+
+  PoseEstimate Optimize(const RigidTransform& initial_camera_from_map,
+                        const std::vector<PoseObservation>& observations) const;
+
+ private:
+  struct NormalEquations;
+  NormalEquations Linearize(const RigidTransform& camera_from_map, const std::vector<PoseObservation>& observations,
+                            const std::vector<bool>& inlier, bool robust) const;
+
+  CameraModel camera_;
+};
+
+}  // namespace kinemap

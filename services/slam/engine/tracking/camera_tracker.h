@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "geometry/camera_model.h"
+#include "map/frame.h"
+#include "map/slam_map.h"
+#include "tracking/local_map_tracker.h"
+#include "tracking/motion_model.h"
+#include "tracking/relocalizer.h"
+
+namespace kinemap {
+
+struct CameraTrackerOptions {
+  double motion_radius_px = 15;      ///< search around the predicted place, finest octave
+  int min_motion_matches = 20;       ///< fewer, and the search is repeated twice as wide
+  int min_pose_inliers = 10;         ///< of the first pose, before the local map
+  int min_local_inliers = 30;        ///< of the final pose
+  int min_relocalized_inliers = 50;  ///< the same while the last relocalisation is recent
+  int recent_frames = 10;
+};
+
+struct TrackedPose {
+  bool tracked = false;
+  bool relocalized = false;
+  std::string reason;  ///< why it is lost
+  PoseEstimate estimate;
+  double match_ms = 0, local_map_ms = 0;
+};
+
+/// Follows the camera from frame to frame: constant velocity, else the reference keyframe, else relocalisation; then
+/// the local map.
+class CameraTracker {
+ public:
+  CameraTracker(const CameraTrackerOptions& options, const CameraModel& camera);
+
+  /// Fills in the frame's pose, matches and reference keyframe.
+  TrackedPose Track(SlamMap* map, Frame* frame);
+
+  /// Starts following from a frame whose pose is known; `previous` (camera_from_map of the frame before) gives a speed.
+  void Start(const SlamMap& map, const Frame& frame, const std::optional<RigidTransform>& previous);
+
+  /// The frame just tracked became this keyframe: from now on it moves with it.
+  void FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id);
+
+  int frames_since_relocalization() const { return frames_since_relocalization_; }
+
+ private:
+  bool TrackLastFrame(const SlamMap& map, Frame* frame) const;
+  bool TrackReferenceKeyframe(const SlamMap& map, Frame* frame) const;
+  void Remember(const SlamMap& map, const Frame& frame);
+
+  CameraTrackerOptions options_;
+  CameraModel camera_;
+  FramePoseSolver solver_;
+  LocalMapTracker local_map_tracker_;
+  Relocalizer relocalizer_;
+  MotionModel motion_model_;
+  Frame last_;
+  RigidTransform last_from_reference_;
+  int lost_frames_ = 0;
+  int frames_since_relocalization_ = 1 << 20;
+};
+
+}  // namespace kinemap

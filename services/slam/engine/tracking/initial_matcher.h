@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "features/brute_force_matcher.h"
+#include "map/frame.h"
+
+namespace kinemap {
+
+/// Follows the trackable keypoints of a reference frame through the frames after it, each in a window around where it
+/// was last seen.
+class InitialMatcher {
+ public:
+  explicit InitialMatcher(const Frame& reference);
+
+  /// Matches (query: reference's keypoint, train: current's keypoint), mutually best, all turning alike.
+  std::vector<FeatureMatch> Match(const Frame& reference, const Frame& current);
+
+ private:
+  std::vector<Eigen::Vector2d> last_seen_px_;  // one a keypoint of the reference
+};
+
+}  // namespace kinemap

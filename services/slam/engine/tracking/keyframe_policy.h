@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace kinemap {
+
+struct KeyframePolicyOptions {
+  int frames_after_relocalization = 20;
+  int longest_gap_frames = 20;  ///< after so many frames a busy mapper no longer holds a keyframe back
+  int min_tracked = 50;
+  double max_reference_ratio = 0.9;  ///< of the points the reference keyframe tracks
+};
+
+struct TrackingQuality {
+  int frames_since_relocalization;  ///< large when there was none
+  int frames_since_keyframe;
+  bool mapper_is_free;
+  int tracked;            ///< landmarks matched in the frame
+  int reference_tracked;  ///< landmarks of its reference keyframe
+};
+
+/// When a frame becomes a keyframe (thesis 3.2.1; Mur-Artal, Montiel and Tardos 2015, section V-E).
+class KeyframePolicy {
+ public:
+  explicit KeyframePolicy(const KeyframePolicyOptions& options) : options_(options) {}
+
+  bool NeedsKeyframe(const TrackingQuality& quality) const {
+    return quality.frames_since_relocalization >= options_.frames_after_relocalization &&
+           (quality.mapper_is_free || quality.frames_since_keyframe >= options_.longest_gap_frames) &&
+           quality.tracked >= options_.min_tracked &&
+           quality.tracked < options_.max_reference_ratio * quality.reference_tracked;
+  }
+
+ private:
+  KeyframePolicyOptions options_;
+};
+
+}  // namespace kinemap

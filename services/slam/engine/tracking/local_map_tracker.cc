@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/local_map_tracker.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "map/landmark_search.h"
+
+namespace kinemap {
+namespace {
+
+constexpr size_t kMostKeyframes = 80;
+constexpr int kNeighborsOfEach = 10;
+constexpr double kMatchRatio = 0.8;
+// Points seen straight as before can be predicted better than points seen from the side.
+constexpr double kStraightCosine = 0.998;
+constexpr double kStraightRadiusPx = 2.5, kOtherRadiusPx = 4.0;
+
+}  // namespace
+
+std::vector<KeyframeId> LocalMapTracker::LocalKeyframes(const SlamMap& map, const Frame& frame) const {
+  std::map<KeyframeId, int> votes;
+  for (const LandmarkId id : frame.landmark_ids) {
+    const Landmark* landmark = map.FindLandmark(id);
+    if (landmark == nullptr) continue;
+    for (const auto& [keyframe_id, keypoint] : landmark->observations) ++votes[keyframe_id];
+  }
+  std::vector<std::pair<int, KeyframeId>> ranked;
+  for (const auto& [keyframe_id, count] : votes) ranked.emplace_back(-count, keyframe_id);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<KeyframeId> local;
+  std::set<KeyframeId> included;
+  for (const auto& [negative_count, keyframe_id] : ranked) {
+    if (local.size() == kMostKeyframes) break;
+    local.push_back(keyframe_id);
+    included.insert(keyframe_id);
+  }
+  const size_t observers = local.size();
+  for (size_t i = 0; i < observers && local.size() < kMostKeyframes; ++i) {
+    // One new neighbour of each observer widens the map a little beyond what the frame already matches.
+    for (const KeyframeId neighbor : map.covisibility().Neighbors(local[i], kNeighborsOfEach)) {
+      if (!included.insert(neighbor).second) continue;
+      local.push_back(neighbor);
+      break;
+    }
+  }
+  return local;
+}
+
+void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
+                                           Frame* frame) const {
+  std::set<LandmarkId> seen;
+  for (LandmarkId& id : frame->landmark_ids) {
+    Landmark* landmark = map->FindLandmark(id);
+    id = landmark == nullptr ? kNoId : landmark->id;
+    if (landmark != nullptr && seen.insert(id).second) ++landmark->visible;
+  }
+  const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
+  KeypointSearch search;
+  for (const KeyframeId keyframe_id : keyframes) {
+    for (const LandmarkId id : map->keyframe(keyframe_id).landmark_ids) {
+      Landmark* landmark = map->FindLandmark(id);
+      if (landmark == nullptr || !landmark->IsTrackable() || !seen.insert(landmark->id).second) continue;
+      const auto view =
+          PredictView(*landmark, map->PositionInMap(*landmark), frame->camera_from_map, center, camera_, map->scales());
+      if (!view) continue;
+      ++landmark->visible;
+      const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor;
+      const SearchWindow window{view->pixel_px, radius * map->scales().scale(view->octave), view->octave - 1,
+                                view->octave};
+      const int best = search.FindBest(*frame->features, landmark->descriptor, window, kMaxHammingDistance, kMatchRatio,
+                                       [&](int j) { return frame->IsFree(j); });
+      if (best >= 0) frame->landmark_ids[best] = landmark->id;
+    }
+  }
+}
+
+PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* frame) const {
+  const std::vector<KeyframeId> keyframes = LocalKeyframes(*map, *frame);
+  if (!keyframes.empty()) frame->reference_keyframe_id = keyframes.front();
+  SearchLocalLandmarks(map, keyframes, radius_factor, frame);
+  PoseEstimate estimate = solver_.Solve(*map, frame);
+  for (const LandmarkId id : frame->landmark_ids) {
+    Landmark* landmark = map->FindLandmark(id);
+    if (landmark != nullptr) ++landmark->found;
+  }
+  return estimate;
+}
+
+}  // namespace kinemap

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "geometry/rigid_transform.h"
+
+namespace kinemap {
+
+/// The camera is expected to go on as it moved between the last two frames.
+class MotionModel {
+ public:
+  /// Both poses are camera_from_map of consecutive frames.
+  void Update(const RigidTransform& last, const RigidTransform& current) { velocity_ = current * last.Inverse(); }
+  void Reset() { velocity_.reset(); }
+  bool IsKnown() const { return velocity_.has_value(); }
+  RigidTransform Predict(const RigidTransform& last) const { return *velocity_ * last; }
+
+ private:
+  std::optional<RigidTransform> velocity_;  // current camera from last camera
+};
+
+}  // namespace kinemap
