@@ -9,8 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from schemas.records import MapUpdate, MotionState
 
-NO_MAP = -1
-
 
 class Points(NamedTuple):
     """Landmarks in the frame of one map: `position` (N, 3), `state` (N,) of MotionState, sorted by landmark id."""
@@ -59,14 +57,6 @@ class MapPoints:
     def maps(self) -> int:
         """Maps that hold a keyframe; more than one where tracking was lost and started anew."""
         return len({map_id for map_id, culled, _ in self._keyframes.values() if not culled})
-
-    def largest_map_id(self) -> int:
-        """The map with most keyframes, the earliest of equals; NO_MAP where there is none."""
-        map_ids = [map_id for map_id, culled, _ in self._keyframes.values() if not culled]
-        if not map_ids:
-            return NO_MAP
-        values, counts = np.unique(map_ids, return_counts=True)
-        return int(values[np.argmax(counts)])
 
     def points(self, map_id: int) -> Points:
         """The landmarks of one map in its frame: map_from_keyframe (a Sim(3)) applied to each anchored position."""

@@ -36,9 +36,10 @@ class RunOutcome:
     """How the run itself went; `failure` is the one line of what ended it early, empty where nothing did."""
 
     session: str = ""
-    complete: bool = True
     failure: str = ""
     wall_s: float | None = None
+    every_frame: bool = True
+    """whether every frame of the input has to be recorded and answered (lossless)"""
 
 
 def build_report(
@@ -50,14 +51,16 @@ def build_report(
     """Put the report together. `trajectory` is the exported one (poses after the map's last correction)."""
     manifest = log.manifests[min(log.manifests)] if log.manifests else None
     first_tracked = log.tracked[min(log.tracked)] if log.tracked else None
+    frames = _frames(log, trajectory)
+    failure = outcome.failure or (_unaccounted(frames) if outcome.every_frame else "")
     return {
         "version": REPORT_VERSION,
         "session": outcome.session,
         "input": manifest.source if manifest else "",
         "stage": first_tracked.handling if first_tracked else "",
-        "complete": outcome.complete,
-        "failure": outcome.failure,
-        "frames": _frames(log, trajectory),
+        "complete": not failure,
+        "failure": failure,
+        "frames": frames,
         "scale": _scale(log),
         "trajectory_length": trajectory.length_m if trajectory else 0.0,
         "ate": _errors(log, trajectory),
@@ -147,6 +150,15 @@ def _frames(log: SessionLog, trajectory: Trajectory | None) -> Report:
         "tracked_after_initialization": None if initialized is None else tracked / (len(states) - initialized),
         "in_trajectory": len(trajectory) if trajectory else 0,
     }
+
+
+def _unaccounted(frames: Report) -> str:
+    if frames["in"] == frames["answered"] >= max(frames["expected"], 1):
+        return ""
+    return (
+        f"{frames['expected']} frames in the input, {frames['in']} recorded, {frames['answered']} answered by slam:"
+        " expected the same number everywhere, and one at least"
+    )
 
 
 def _scale(log: SessionLog) -> str:

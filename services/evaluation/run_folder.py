@@ -58,8 +58,7 @@ def _draw(
         error = _error(trajectory, truth, report)
         plot_trajectory(trajectory, plots / "trajectory.png", truth, error)
     unit = "m" if report["scale"] == "metric" else "map units"
-    map_points = log.map_points
-    plot_map(map_points.points(map_points.largest_map_id()), trajectory, plots / "map.png", unit)
+    plot_map(log.map_points.points(log.main_map_id()), trajectory, plots / "map.png", unit)
     plot_stage_times(stage_times(log, services), plots / "stage_times.png")
     plot_density(log.densities, plots / "density.png")
 

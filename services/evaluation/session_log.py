@@ -33,6 +33,8 @@ READ_TOPICS = (
 )
 """The topics of a recording that `SessionLog.add` takes."""
 
+NO_MAP = -1
+
 # Truth and objects of one frame lie fewer frames apart than this; a frame whose objects never came is let go.
 _PENDING_FRAMES = 64
 
@@ -79,9 +81,17 @@ class SessionLog:
         """The true poses; None where the source has none."""
         return _trajectory({pose.timestamp_ns: pose.world_from_camera for pose in self.true_poses.values()}, "truth")
 
+    def main_map_id(self) -> int:
+        """The map that most frames were tracked in, the lower id of equals, as in the exports; NO_MAP without any."""
+        map_ids = [frame.map_id for frame in self.tracked.values() if frame.state is TrackingState.TRACKING]
+        if not map_ids:
+            return NO_MAP
+        values, counts = np.unique(map_ids, return_counts=True)
+        return int(values[np.argmax(counts)])
+
     def live_trajectory(self) -> Trajectory | None:
-        """The poses as slam said them frame by frame, in its largest map; None where nothing was tracked."""
-        map_id = self.map_points.largest_map_id()
+        """The poses as slam said them frame by frame, in its main map; None where nothing was tracked."""
+        map_id = self.main_map_id()
         poses = {
             frame.timestamp_ns: matrix_from_pose(frame.map_from_camera)
             for frame in self.tracked.values()

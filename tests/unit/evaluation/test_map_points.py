@@ -4,7 +4,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from schemas.records import MapUpdate, MotionState
-from services.evaluation.map_points import NO_MAP, MapPoints
+from services.evaluation.map_points import MapPoints
 
 
 def _keyframes(*rows: tuple[int, int, bool], pose: tuple[float, ...] = (0, 0, 0, 0, 0, 0, 1, 1)) -> MapUpdate:
@@ -60,13 +60,12 @@ def test_each_map_has_its_own_points_and_culled_keyframes_still_carry_theirs() -
     points = MapPoints()
     points.add(_keyframes((0, 0, True), (1, 0, False), (2, 5, False), (3, 5, False)))
     points.add(_landmarks((1, 0, MotionState.STATIC), (2, 2, MotionState.STATIC)))
-    assert (points.keyframes, points.maps, points.largest_map_id()) == (3, 2, 5)
+    assert (points.keyframes, points.maps) == (3, 2)
     assert points.points(0).landmark_id.tolist() == [1]
     assert points.points(5).landmark_id.tolist() == [2]
 
 
 def test_an_empty_map() -> None:
     points = MapPoints()
-    assert points.largest_map_id() == NO_MAP
-    assert points.points(NO_MAP).position.shape == (0, 3)
+    assert points.points(0).position.shape == (0, 3)
     assert points.counts_by_label()["static"] == pytest.approx(0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from services.evaluation.report import (
     stage_times,
     write_report,
 )
-from services.evaluation.session_log import SessionLog
+from services.evaluation.session_log import NO_MAP, SessionLog
 from services.evaluation.summary import summary_rows
 from services.evaluation.trajectory import Trajectory
 from services.runtime.errors import InputError
@@ -107,7 +108,7 @@ USAGE = {
 
 @pytest.fixture
 def report(log: SessionLog) -> Report:
-    return build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", True, "", 5.0))
+    return build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 5.0))
 
 
 def test_frames_are_accounted_for(report: Report) -> None:
@@ -133,9 +134,35 @@ def test_a_run_that_never_initialised_says_so(log: SessionLog) -> None:
     assert any(what == "ATE final" and "no tracked pose" in value for what, value in summary_rows(report))
 
 
+def test_the_main_map_is_the_one_most_frames_were_tracked_in(log: SessionLog) -> None:
+    assert log.main_map_id() == 0
+    log.tracked = {key: replace(frame, map_id=3) if key >= 20 else frame for key, frame in log.tracked.items()}
+    assert log.main_map_id() == 3
+    live = log.live_trajectory()
+    assert live is not None
+    assert len(live) == 25
+    assert SessionLog().main_map_id() == NO_MAP
+
+
 def test_without_truth_there_is_no_ate(log: SessionLog) -> None:
     log.true_poses.clear()
     assert build_report(log, log.live_trajectory(), {}, RunOutcome())["ate"] is None
+
+
+@pytest.mark.parametrize(
+    ("outcome", "complete"),
+    [(RunOutcome(), False), (RunOutcome(every_frame=False), True), (RunOutcome(failure="x"), False)],
+)
+def test_a_missing_answer_makes_a_lossless_run_incomplete(log: SessionLog, outcome: RunOutcome, complete: bool) -> None:
+    del log.tracked[17]
+    report = build_report(log, None, {}, outcome)
+    assert report["complete"] is complete
+    if not outcome.failure and not complete:
+        assert "50 frames in the input, 50 recorded, 49 answered by slam" in report["failure"]
+
+
+def test_no_frame_at_all_is_not_complete() -> None:
+    assert build_report(SessionLog(), None, {}, RunOutcome())["complete"] is False
 
 
 def test_stage_times_are_percentiles(log: SessionLog) -> None:
@@ -161,7 +188,7 @@ def test_a_message_recorded_twice_counts_once(log: SessionLog, report: Report, w
     log.add(10, FrameManifest(int(drive.timestamp_ns[10]), "a drive", "000010", (), FRAMES))
     log.add(10, _tracked(10, drive))
     log.add(INITIALIZED, _map_update(0))
-    again = build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", True, "", 5.0))
+    again = build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 5.0))
     assert again == report
 
 

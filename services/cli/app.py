@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The `kinemap` command: where its commands meet, and where every KinemapError ends in one line."""
+
+import sys
+
+import typer
+
+from services.cli.config import config_app
+from services.cli.doctor import doctor
+from services.cli.down import down
+from services.cli.evaluate import evaluate
+from services.cli.export import export
+from services.cli.record import record
+from services.cli.replay import replay
+from services.cli.run import run
+from services.cli.status import status
+from services.cli.up import up
+from services.runtime.errors import KinemapError
+
+INTERRUPTED = 130
+
+app = typer.Typer(
+    name="kinemap",
+    help="Drives a camera, or a recording of one, through a mapping of places where things move.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (run, up, down, status, record, replay, export, evaluate):
+    app.command()(command)
+app.add_typer(config_app, name="config")
+app.command()(doctor)
+
+
+def main() -> None:
+    """Run the command line; exit code 2 for input that cannot be used, 1 for what else went wrong."""
+    try:
+        app()
+    except KinemapError as error:
+        print(f"kinemap: error: {error}", file=sys.stderr)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
+
+
+if __name__ == "__main__":
+    main()

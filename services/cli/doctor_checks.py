@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What kinemap needs of a machine, one check each."""
+
+import ctypes.util
+import importlib.metadata
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import psutil
+from packaging.requirements import Requirement
+
+from services.cli.ports import is_free
+from services.runtime.config import Config
+
+_DEBIAN_PACKAGES = Path(__file__).resolve().parents[2] / "deploy" / "setup" / "debian-packages.txt"
+_LEAST_DISK_GB = 5.0
+_LEAST_MEMORY_GB = 4.0
+_IMPORT_TIMEOUT_S = 60
+_GIGABYTE = 1e9
+
+
+@dataclass(frozen=True)
+class Check:
+    """One line of the doctor. `ok` None: neither good nor bad, only worth knowing."""
+
+    name: str
+    ok: bool | None
+    found: str
+    remedy: str = ""
+
+
+def all_checks(config: Config, folder: Path) -> Iterator[Check]:
+    """Every check, the cheap ones first."""
+    yield check_python()
+    yield from check_debian_packages()
+    yield from check_python_packages()
+    yield check_import("SLAM engine", "services.slam._engine", "make setup")
+    yield check_open3d()
+    yield check_port(
+        "HTTP port", config.mapstore.http_host, config.mapstore.http_port, "--port N, or stop the program that has it"
+    )
+    yield check_disk(folder)
+    yield check_memory()
+    yield check_gpu()
+
+
+def check_python() -> Check:
+    """3.11 or later."""
+    version = ".".join(map(str, sys.version_info[:3]))
+    return Check("Python", sys.version_info >= (3, 11), version, "sudo apt-get install python3 (Debian 12 or later)")
+
+
+def check_debian_packages() -> Iterator[Check]:
+    """Each that the set-up installs, by dpkg; one note where there is no list (an installed wheel) or no dpkg."""
+    if not _DEBIAN_PACKAGES.is_file():
+        yield Check("Debian packages", None, "not checked: this is no source tree, whose list the set-up goes by")
+        return
+    rows = [line.partition("#")[0].strip() for line in _DEBIAN_PACKAGES.read_text(encoding="utf-8").splitlines()]
+    names = [name for name in rows if name]
+    if shutil.which("dpkg-query") is None:
+        yield Check("Debian packages", None, f"no dpkg here; this system's own packages of {' '.join(names)}")
+        return
+    installed = _installed_packages(names)
+    for name in names:
+        found = installed.get(name) or installed.get(f"{name}t64")
+        yield Check(f"Debian {name}", found is not None, found or "not installed", f"sudo apt-get install {name}")
+
+
+def _installed_packages(names: list[str]) -> dict[str, str]:
+    # Ubuntu names some libraries with a t64 suffix since its 64-bit time change.
+    command = ["dpkg-query", "--show", "--showformat=${binary:Package} ${db:Status-Status} ${Version}\\n"]
+    asked = subprocess.run(
+        [*command, *names, *(f"{name}t64" for name in names)], capture_output=True, text=True, check=False
+    )
+    rows = [line.split() for line in asked.stdout.splitlines()]
+    return {row[0].partition(":")[0]: row[2] for row in rows if len(row) == 3 and row[1] == "installed"}
+
+
+def check_python_packages() -> Iterator[Check]:
+    """Every requirement of kinemap's own metadata, all its extras but `dev` included."""
+    try:
+        declared = [Requirement(text) for text in importlib.metadata.requires("kinemap") or []]
+    except importlib.metadata.PackageNotFoundError:
+        yield Check("Python package kinemap", False, "not installed", "make setup")
+        return
+    wrong = []
+    needed: dict[str, Requirement] = {}
+    for requirement in declared:
+        if requirement.name != "kinemap" and "dev" not in str(requirement.marker):
+            needed[requirement.name] = requirement
+    for name, requirement in sorted(needed.items()):
+        try:
+            version = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            wrong.append(
+                Check(f"Python {name}", False, "not installed", f"pip install '{name}{requirement.specifier}'")
+            )
+            continue
+        if not requirement.specifier.contains(version, prereleases=True):
+            remedy = f"pip install '{name}{requirement.specifier}'"
+            wrong.append(Check(f"Python {name}", False, f"{version}, expected {requirement.specifier}", remedy))
+    yield from wrong
+    if not wrong:
+        yield Check("Python packages", True, f"all {len(needed)} that kinemap declares")
+
+
+def check_import(name: str, module: str, remedy: str) -> Check:
+    """Import `module` in a process of its own, so that what crashes there does not crash here."""
+    command = [sys.executable, "-c", f"import {module} as m; print(getattr(m, '__version__', 'imports'))"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=_IMPORT_TIMEOUT_S, check=False)
+    except subprocess.TimeoutExpired:
+        return Check(name, False, f"import of {module} takes more than {_IMPORT_TIMEOUT_S} s", remedy)
+    if done.returncode == 0:
+        return Check(name, True, done.stdout.strip())
+    last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
+    return Check(name, False, last, remedy)
+
+
+def check_open3d() -> Check:
+    """The simulator's renderer; it needs Debian's libusb."""
+    if ctypes.util.find_library("usb-1.0") is None:
+        return Check("Open3D", False, "libusb-1.0 is not there", "sudo apt-get install libusb-1.0-0")
+    return check_import("Open3D", "open3d", "pip install open3d (the simulator alone needs it)")
+
+
+def check_port(name: str, host: str, port: int, remedy: str) -> Check:
+    """Whether a run could listen there."""
+    free = is_free(host, port)
+    return Check(name, free, f"{host}:{port} is {'free' if free else 'in use'}", remedy)
+
+
+def check_disk(folder: Path) -> Check:
+    """Room for a few runs: 300 KITTI frames record about a quarter of a gigabyte."""
+    existing = next(path for path in (folder.resolve(), *folder.resolve().parents) if path.exists())
+    free_gb = shutil.disk_usage(existing).free / _GIGABYTE
+    return Check(
+        "disk", free_gb >= _LEAST_DISK_GB, f"{free_gb:.1f} GB free in {existing}", f"free {_LEAST_DISK_GB:g} GB"
+    )
+
+
+def check_memory() -> Check:
+    """Cores and memory; the default run fits two cores and 4 GB."""
+    memory_gb = psutil.virtual_memory().total / _GIGABYTE
+    found = f"{psutil.cpu_count()} cores, {memory_gb:.1f} GB memory"
+    return Check("machine", memory_gb >= _LEAST_MEMORY_GB, found, f"at least {_LEAST_MEMORY_GB:g} GB of memory")
+
+
+def check_gpu() -> Check:
+    """Said for information: everything runs without one."""
+    if shutil.which("nvidia-smi") is None:
+        return Check("GPU", None, "none found; everything runs on the CPU")
+    command = ["nvidia-smi", "--query-gpu=name,memory.total", "--format=csv,noheader"]
+    asked = subprocess.run(command, capture_output=True, text=True, check=False)
+    return Check("GPU", None, asked.stdout.strip().replace("\n", "; ") or "nvidia-smi answers nothing")
