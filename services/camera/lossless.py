@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """`lossless` as the camera sees it: send within the window, send again what stays unanswered, end when all is done."""
 
-from services.camera.outlet import NextFrame, Outlet, Parcel
+from services.camera.delivery import Outlet, Parcel
 from services.camera.position import Position, PositionFile
+from services.camera.sources.source import SourceFrame
 from services.runtime.frame_window import FrameWindow
 
 
 class LosslessDelivery:
     """Sends frame n when everyone has answered up to n - W, and the end of input when everyone has answered all.
 
+    Offered are the frames from the one after the saved position on.
+
     Args:
-        next_frame: the frames from the one after the saved position on.
         window: fresh, its first sequence the one after the saved position.
         position_file: where a predecessor was, and where this one is saved.
         outlet: packs and sends.
     """
 
-    def __init__(self, next_frame: NextFrame, window: FrameWindow, position_file: PositionFile, outlet: Outlet) -> None:
-        self._next_frame = next_frame
+    def __init__(self, window: FrameWindow, position_file: PositionFile, outlet: Outlet) -> None:
         self._window = window
         self._file = position_file
         self._outlet = outlet
@@ -43,25 +44,29 @@ class LosslessDelivery:
         """How often a frame was sent again."""
         return self._sent_again
 
+    @property
+    def wants_frame(self) -> bool:
+        """Whether the next frame may go."""
+        return not self._frames_over and self._window.may_send
+
+    def offer(self, frame: SourceFrame | None, now_s: float) -> None:
+        """Send the next frame; None when there is none left."""
+        if frame is None:
+            self._frames_over = True
+        else:
+            self._send_first(self._outlet.pack(self._window.next_sequence, frame), now_s)
+
     def step(self, now_s: float) -> float:
-        """Send again what is overdue, then one frame or the end if it may go; in how many seconds to come back."""
+        """Send again what is overdue, and the end if it may go; in how many seconds to come back."""
         for sequence in self._window.overdue(now_s):
             self._outlet.send(self._kept[sequence])
             self._sent_again += 1
-        if not self._frames_over and self._window.may_send:
-            frame = self._next_frame()
-            if frame is None:
-                self._frames_over = True
-            else:
-                self._send_first(self._outlet.pack(self._window.next_sequence, frame), now_s)
         if self._frames_over and self._end_sequence is None and not self._window.in_flight:
             # Only when all frames are done everywhere: then nobody has to hold the end back behind a late frame.
             self._end_sequence = self._window.next_sequence
             self._send_first(self._outlet.pack_end(self._end_sequence, self._last_timestamp_ns + 1), now_s)
         due_s = self._window.next_due_s()
-        if due_s is None or (not self._frames_over and self._window.may_send):
-            return 0.0
-        return max(0.0, due_s - now_s)
+        return 0.0 if self.wants_frame or due_s is None else max(0.0, due_s - now_s)
 
     def answered(self, service: str, sequence: int) -> None:
         """A service has done its part of a frame."""

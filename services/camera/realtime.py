@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`realtime` as the camera sees it: frames leave at the pace at which they were captured, and nobody is waited for."""
 
-from services.camera.outlet import NextFrame, Outlet, Parcel
+from services.camera.delivery import Outlet, Parcel
 from services.camera.pacing import Pacing
 from services.camera.position import Position, PositionFile
 from services.camera.sources.source import SourceFrame
@@ -13,17 +13,15 @@ _END_PATIENCE_S = 30.0
 class RealtimeDelivery:
     """Sends each frame once, when its time has come. Only the end of input is sent until it is answered.
 
+    Offered are the frames from the one after the saved position on.
+
     Args:
-        next_frame: the frames from the one after the saved position on.
         end_window: of the end of input alone, its first sequence 0.
         position_file: where a predecessor was, and where this one is saved.
         outlet: packs and sends.
     """
 
-    def __init__(
-        self, next_frame: NextFrame, end_window: FrameWindow, position_file: PositionFile, outlet: Outlet
-    ) -> None:
-        self._next_frame = next_frame
+    def __init__(self, end_window: FrameWindow, position_file: PositionFile, outlet: Outlet) -> None:
         self._end_window = end_window
         self._file = position_file
         self._outlet = outlet
@@ -49,14 +47,25 @@ class RealtimeDelivery:
         """How often the end of input was sent again."""
         return self._sent_again
 
+    @property
+    def wants_frame(self) -> bool:
+        """Whether the frame before has left."""
+        return self._waiting is None and self._end is None
+
+    def offer(self, frame: SourceFrame | None, now_s: float) -> None:
+        """Hold the next frame until its time has come; None when there is none left."""
+        self._waiting = frame
+        if frame is None:
+            self._end = self._outlet.pack_end(self.done + 1, self._position.timestamp_ns + 1)
+            self._give_up_s = now_s + _END_PATIENCE_S
+            self._end_window.sent(0, now_s)
+            self._outlet.send(self._end)
+
     def step(self, now_s: float) -> float:
         """Send what has its time now; in how many seconds to come back."""
         if self._end is not None:
             return self._see_to_end(self._end, now_s)
         if self._waiting is None:
-            self._waiting = self._next_frame()
-        if self._waiting is None:
-            self._begin_end(now_s)
             return 0.0
         wait_s = self._pacing.wait_s(self._waiting.timestamp_ns, now_s)
         if wait_s == 0.0:
@@ -79,12 +88,6 @@ class RealtimeDelivery:
     def waiting_for(self) -> str:
         """Who has not answered the end of input: `recorder, slam`."""
         return ", ".join(sorted(self._end_window.missing(0)))
-
-    def _begin_end(self, now_s: float) -> None:
-        self._end = self._outlet.pack_end(self.done + 1, self._position.timestamp_ns + 1)
-        self._give_up_s = now_s + _END_PATIENCE_S
-        self._end_window.sent(0, now_s)
-        self._outlet.send(self._end)
 
     def _see_to_end(self, end: Parcel, now_s: float) -> float:
         if now_s >= self._give_up_s:

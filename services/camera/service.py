@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The camera service: a source's frames onto the bus, in either way to deliver."""
 
-import threading
 import time
 from functools import partial
-from typing import Protocol
 
 import cv2
 
@@ -14,7 +12,7 @@ from schemas.records import EndOfInput
 from services.camera.configured_source import open_configured_source
 from services.camera.frame_records import frame_records
 from services.camera.lossless import LosslessDelivery
-from services.camera.outlet import Delivery, Parcel
+from services.camera.delivery import Delivery, Host, Parcel
 from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
@@ -32,14 +30,6 @@ from services.runtime.zenoh_bus import ZenohBus
 NAME = "camera"
 _TICK_S = 0.1
 _SAY_WHO_IS_MISSING_S = 10.0
-
-
-class Host(Protocol):
-    """Where the camera says how far it is, and hears that it should stop."""
-
-    stopping: threading.Event
-    state: str
-    sequence: int
 
 
 class BusOutlet:
@@ -98,20 +88,20 @@ class CameraService:
             on_read_ms = partial(self.metrics.observe_ms, "read")
             with Prefetch(self._source, position.sequence + 1, on_read_ms) as ahead:
                 self._wait_for_services(host)
-                delivery = self._delivery(ahead, position.sequence + 1)
-                self._deliver(delivery, host)
+                delivery = self._delivery(position.sequence + 1)
+                self._deliver(ahead, delivery, host)
                 if ahead.failure is not None:
                     raise ahead.failure
                 if not delivery.ended:
                     return
         host.state = "done"
 
-    def _delivery(self, ahead: Prefetch, first: int) -> Delivery:
+    def _delivery(self, first: int) -> Delivery:
         services, resend_after_s = topics.ANSWERING_SERVICES, self._settings.resend_after_s
         if self._settings.mode == "lossless":
             window = FrameWindow(self._settings.window, services, resend_after_s, first)
-            return LosslessDelivery(ahead.next, window, self._position_file, self._outlet)
-        return RealtimeDelivery(ahead.next, FrameWindow(1, services, resend_after_s), self._position_file, self._outlet)
+            return LosslessDelivery(window, self._position_file, self._outlet)
+        return RealtimeDelivery(FrameWindow(1, services, resend_after_s), self._position_file, self._outlet)
 
     def _wait_for_services(self, host: Host) -> None:
         said_s = time.monotonic()
@@ -121,10 +111,12 @@ class CameraService:
                 self._log.warning("waiting_for_services", missing=",".join(missing))
         self._presence.take_came()
 
-    def _deliver(self, delivery: Delivery, host: Host) -> None:
+    def _deliver(self, ahead: Prefetch, delivery: Delivery, host: Host) -> None:
         while not (delivery.ended or host.stopping.is_set()):
             if self._presence.take_came():
                 delivery.service_came(time.monotonic())
+            if delivery.wants_frame:
+                delivery.offer(ahead.next(), time.monotonic())
             sent_again = delivery.sent_again
             wait_s = delivery.step(time.monotonic())
             if delivery.sent_again > sent_again:

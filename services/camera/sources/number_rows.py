@@ -56,7 +56,7 @@ def read_times_ns(path: Path, frames: int) -> list[int]:
     Raises:
         InputError: fewer times than frames, no number, a negative one, or times that do not increase.
     """
-    times_ns = []
+    times_ns: list[int] = []
     for line_number, line in read_lines(path):
         try:
             time_s = Decimal(line)

@@ -9,7 +9,7 @@ import pytest
 
 from schemas.records import CameraCalibration, Image
 from services.camera.lossless import LosslessDelivery
-from services.camera.outlet import NextFrame, Parcel
+from services.camera.delivery import Delivery, Parcel
 from services.camera.pacing import Pacing
 from services.camera.position import Position, PositionFile
 from services.camera.realtime import RealtimeDelivery
@@ -39,13 +39,30 @@ class Outlet:
         self.sent.append(parcel.sequence)
 
 
-def _frames(first: int, count: int) -> NextFrame:
-    pixels = np.zeros((2, 2), dtype=np.uint8)
-    times = [index * STEP_NS for index in range(first, count)]
-    frames = [
-        SourceFrame(str(time), time, Image(time, pixels), CameraCalibration(time, 2, 2, np.eye(3))) for time in times
-    ]
-    return iter([*frames, None, None]).__next__
+class Camera:
+    """A delivery with its source of `count` frames."""
+
+    def __init__(self, delivery: Delivery, outlet: Outlet, first: int, count: int) -> None:
+        self.delivery = delivery
+        self.outlet = outlet
+        self._index = first
+        self._count = count
+
+    def step(self, now_s: float) -> float:
+        if self.delivery.wants_frame:
+            self.delivery.offer(_frame(self._index) if self._index < self._count else None, now_s)
+            self._index += 1
+        return self.delivery.step(now_s)
+
+    def answer(self, sequence: int) -> None:
+        for service in SERVICES:
+            self.delivery.answered(service, sequence)
+
+
+def _frame(index: int) -> SourceFrame:
+    time_ns = index * STEP_NS
+    image = Image(time_ns, np.zeros((2, 2), dtype=np.uint8))
+    return SourceFrame(str(index), time_ns, image, CameraCalibration(time_ns, 2, 2, np.eye(3)))
 
 
 @pytest.fixture
@@ -54,124 +71,133 @@ def position_file(tmp_path: Path) -> PositionFile:
 
 
 @pytest.fixture
-def lossless(position_file: PositionFile) -> Callable[..., tuple[LosslessDelivery, Outlet]]:
-    def make(count: int = 5, window: int = 2) -> tuple[LosslessDelivery, Outlet]:
+def lossless(position_file: PositionFile) -> Callable[[int], Camera]:
+    def make(count: int) -> Camera:
         first = position_file.read().sequence + 1
         outlet = Outlet()
-        frame_window = FrameWindow(window, SERVICES, 2.0, first)
-        return LosslessDelivery(_frames(first, count), frame_window, position_file, outlet), outlet
+        return Camera(
+            LosslessDelivery(FrameWindow(2, SERVICES, 2.0, first), position_file, outlet), outlet, first, count
+        )
 
     return make
 
 
-def _answer(delivery: LosslessDelivery | RealtimeDelivery, sequence: int) -> None:
-    for service in SERVICES:
-        delivery.answered(service, sequence)
+@pytest.fixture
+def realtime(position_file: PositionFile) -> Callable[[int], Camera]:
+    def make(count: int) -> Camera:
+        first = position_file.read().sequence + 1
+        outlet = Outlet()
+        return Camera(RealtimeDelivery(FrameWindow(1, SERVICES, 2.0), position_file, outlet), outlet, first, count)
+
+    return make
 
 
-def test_lossless_keeps_the_window_and_ends_when_all_is_answered(
-    lossless: Callable[..., tuple[LosslessDelivery, Outlet]],
-) -> None:
-    delivery, outlet = lossless(count=3)
-    assert [delivery.step(0.0) for _ in range(4)] == [0.0, 2.0, 2.0, 2.0]
-    assert outlet.sent == [0, 1]
-    delivery.answered("slam", 0)
-    delivery.step(0.0)
-    assert outlet.sent == [0, 1]
-    delivery.answered("recorder", 0)
+def test_lossless_keeps_the_window_and_ends_when_all_is_answered(lossless: Callable[[int], Camera]) -> None:
+    camera = lossless(3)
+    assert [camera.step(0.0) for _ in range(3)] == [0.0, 2.0, 2.0]
+    assert camera.outlet.sent == [0, 1]
+    camera.delivery.answered("slam", 0)
+    camera.step(0.0)
+    assert camera.outlet.sent == [0, 1]
+    camera.delivery.answered("recorder", 0)
     for _ in range(3):
-        delivery.step(0.0)
-    assert (outlet.sent, delivery.done) == ([0, 1, 2], 0)
-    _answer(delivery, 2)
-    delivery.step(0.0)
-    assert outlet.sent == [0, 1, 2]
-    _answer(delivery, 1)
-    delivery.step(0.0)
-    assert outlet.parcels[-1] == Parcel(3, 2 * STEP_NS + 1, ())
-    assert not delivery.ended
-    _answer(delivery, 3)
-    assert (delivery.ended, delivery.done) == (True, 2)
+        camera.step(0.0)
+    assert (camera.outlet.sent, camera.delivery.done) == ([0, 1, 2], 0)
+    camera.answer(2)
+    camera.step(0.0)
+    assert camera.outlet.sent == [0, 1, 2]
+    camera.answer(1)
+    camera.step(0.0)
+    assert camera.outlet.parcels[-1] == Parcel(3, 2 * STEP_NS + 1, ())
+    assert not camera.delivery.ended
+    camera.answer(3)
+    assert (camera.delivery.ended, camera.delivery.done) == (True, 2)
 
 
-def test_lossless_sends_the_same_again_until_it_is_answered(
-    lossless: Callable[..., tuple[LosslessDelivery, Outlet]],
-) -> None:
-    delivery, outlet = lossless(count=1)
-    delivery.step(0.0)
-    assert delivery.step(1.5) == pytest.approx(0.5)
-    assert outlet.sent == [0]
-    delivery.step(2.0)
-    assert outlet.parcels == [outlet.parcels[0]] * 2
-    assert delivery.waiting_for() == "recorder 0-0, slam 0-0"
-    delivery.service_came(2.5)
-    delivery.step(2.5)
-    assert (outlet.sent, delivery.sent_again) == ([0, 0, 0], 2)
-    _answer(delivery, 0)
-    delivery.step(3.0)
-    delivery.step(5.0)
-    assert outlet.sent == [0, 0, 0, 1, 1]
-    assert not delivery.ended
+def test_lossless_sends_the_same_again_until_it_is_answered(lossless: Callable[[int], Camera]) -> None:
+    camera = lossless(1)
+    camera.step(0.0)
+    assert camera.step(1.5) == pytest.approx(0.5)
+    assert camera.outlet.sent == [0]
+    camera.step(2.0)
+    assert camera.outlet.parcels == [camera.outlet.parcels[0]] * 2
+    assert camera.delivery.waiting_for() == "recorder 0-0, slam 0-0"
+    camera.delivery.service_came(2.5)
+    camera.step(2.5)
+    assert (camera.outlet.sent, camera.delivery.sent_again) == ([0, 0, 0], 2)
+    camera.answer(0)
+    camera.step(3.0)
+    camera.step(5.0)
+    assert camera.outlet.sent == [0, 0, 0, 1, 1]
+    assert not camera.delivery.ended
 
 
-def test_lossless_goes_on_where_a_killed_one_was(lossless: Callable[..., tuple[LosslessDelivery, Outlet]]) -> None:
-    delivery, _ = lossless(count=5)
+def test_lossless_does_not_count_the_time_a_frame_takes_to_render(lossless: Callable[[int], Camera]) -> None:
+    camera = lossless(2)
+    camera.delivery.offer(_frame(0), 5.0)
+    assert camera.delivery.step(5.0) == 0.0
+    camera.delivery.offer(_frame(1), 6.9)
+    assert camera.delivery.step(6.9) == pytest.approx(0.1)
+    assert camera.outlet.sent == [0, 1]
+
+
+def test_lossless_goes_on_where_a_killed_one_was(lossless: Callable[[int], Camera]) -> None:
+    killed = lossless(5)
     for sequence in range(3):
-        delivery.step(0.0)
-        _answer(delivery, sequence)
-    delivery.step(0.0)
-    delivery.step(0.0)
-    resumed, outlet = lossless(count=5)
-    assert resumed.done == 2
+        killed.step(0.0)
+        killed.answer(sequence)
+    killed.step(0.0)
+    killed.step(0.0)
+    resumed = lossless(5)
+    assert resumed.delivery.done == 2
     resumed.step(0.0)
     resumed.step(0.0)
-    assert outlet.sent == [3, 4]
-    _answer(resumed, 3)
-    _answer(resumed, 4)
-    killed_before_the_end, outlet = lossless(count=5)
+    assert resumed.outlet.sent == [3, 4]
+    resumed.answer(3)
+    resumed.answer(4)
+    killed_before_the_end = lossless(5)
     killed_before_the_end.step(0.0)
-    assert outlet.parcels == [Parcel(5, 4 * STEP_NS + 1, ())]
-    _answer(killed_before_the_end, 5)
-    assert killed_before_the_end.ended
-    assert lossless(count=5)[0].ended
+    assert killed_before_the_end.outlet.parcels == [Parcel(5, 4 * STEP_NS + 1, ())]
+    killed_before_the_end.answer(5)
+    assert killed_before_the_end.delivery.ended
+    assert lossless(5).delivery.ended
 
 
-def test_realtime_paces_and_waits_for_nobody(position_file: PositionFile) -> None:
-    outlet = Outlet()
-    delivery = RealtimeDelivery(_frames(0, 3), FrameWindow(1, SERVICES, 2.0), position_file, outlet)
-    assert delivery.step(50.0) == 0.0
-    assert delivery.step(50.0) == pytest.approx(0.1)
-    assert delivery.step(50.06) == pytest.approx(0.04)
-    assert outlet.sent == [0]
-    delivery.step(50.1)
-    delivery.step(50.2)
-    assert (outlet.sent, delivery.done) == ([0, 1, 2], 2)
-    delivery.step(50.2)
-    assert outlet.parcels[-1] == Parcel(3, 2 * STEP_NS + 1, ())
-    delivery.step(52.5)
-    assert (outlet.sent, delivery.sent_again) == ([0, 1, 2, 3, 3], 1)
-    delivery.answered("slam", 3)
-    assert (delivery.ended, delivery.waiting_for()) == (False, "recorder")
-    _answer(delivery, 3)
-    assert delivery.ended
+def test_realtime_paces_and_waits_for_nobody(realtime: Callable[[int], Camera]) -> None:
+    camera = realtime(3)
+    assert camera.step(50.0) == 0.0
+    assert camera.step(50.0) == pytest.approx(0.1)
+    assert camera.step(50.06) == pytest.approx(0.04)
+    assert camera.outlet.sent == [0]
+    camera.step(50.1)
+    camera.step(50.2)
+    assert (camera.outlet.sent, camera.delivery.done) == ([0, 1, 2], 2)
+    camera.step(50.2)
+    assert camera.outlet.parcels[-1] == Parcel(3, 2 * STEP_NS + 1, ())
+    camera.step(52.5)
+    assert (camera.outlet.sent, camera.delivery.sent_again) == ([0, 1, 2, 3, 3], 1)
+    camera.delivery.answered("slam", 3)
+    assert (camera.delivery.ended, camera.delivery.waiting_for()) == (False, "recorder")
+    camera.answer(3)
+    assert camera.delivery.ended
 
 
-def test_realtime_gives_up_on_the_end(position_file: PositionFile) -> None:
-    delivery = RealtimeDelivery(_frames(0, 1), FrameWindow(1, SERVICES, 2.0), position_file, Outlet())
-    delivery.step(0.0)
-    delivery.step(0.0)
-    delivery.step(29.0)
-    assert not delivery.ended
-    delivery.step(31.0)
-    assert delivery.ended
+def test_realtime_gives_up_on_the_end(realtime: Callable[[int], Camera], position_file: PositionFile) -> None:
+    camera = realtime(1)
+    camera.step(0.0)
+    camera.step(0.0)
+    camera.step(29.0)
+    assert not camera.delivery.ended
+    camera.step(31.0)
+    assert camera.delivery.ended
     assert position_file.read() == Position(0, 0, ended=True)
 
 
-def test_realtime_goes_on_behind_the_last_frame_sent(position_file: PositionFile) -> None:
-    first = RealtimeDelivery(_frames(0, 3), FrameWindow(1, SERVICES, 2.0), position_file, Outlet())
-    first.step(0.0)
-    outlet = Outlet()
-    RealtimeDelivery(_frames(1, 3), FrameWindow(1, SERVICES, 2.0), position_file, outlet).step(7.0)
-    assert outlet.parcels == [Parcel(1, STEP_NS, ())]
+def test_realtime_goes_on_behind_the_last_frame_sent(realtime: Callable[[int], Camera]) -> None:
+    realtime(3).step(0.0)
+    resumed = realtime(3)
+    resumed.step(7.0)
+    assert resumed.outlet.parcels == [Parcel(1, STEP_NS, ())]
 
 
 def test_pacing_does_not_make_up_for_a_long_stop() -> None:

@@ -88,7 +88,7 @@ def test_a_cut_off_image_is_named_when_it_is_read(make_images: Callable[..., Pat
     path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
     images = ImageFiles(folder)
     assert images.read(0).shape == (240, 320)
-    with pytest.raises(InputError, match="000001.*not a readable image, expected a whole PNG or JPEG file"):
+    with pytest.raises(InputError, match=r"000001.*not a readable image, expected a whole PNG or JPEG file"):
         images.read(1)
 
 

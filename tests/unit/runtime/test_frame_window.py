@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The credits of `lossless`: held against a plain model with random histories, and by example."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -54,7 +56,7 @@ def test_overdue_frames_are_given_once_and_ever_less_often() -> None:
     assert window.overdue(12.0) == ()
     assert window.overdue(13.0) == (1,)
     times = [now / 10 for now in range(130, 2000) if 0 in window.overdue(now / 10)]
-    gaps = [round(later - earlier, 1) for earlier, later in zip(times, times[1:], strict=False)]
+    gaps = [round(later - earlier, 1) for earlier, later in pairwise(times)]
     assert times[0] == 16.0
     assert gaps[0] == 8.0
     assert set(gaps[1:]) == {16.0}

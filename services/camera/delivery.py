@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the two ways to deliver stand on, and what they are to the camera service."""
 
-from collections.abc import Callable
+import threading
 from typing import NamedTuple, Protocol
 
 from schemas.topics import Topic
 from services.camera.sources.source import SourceFrame
-
-NextFrame = Callable[[], SourceFrame | None]
-"""The frames in order; None at the end."""
 
 
 class Parcel(NamedTuple):
@@ -32,6 +29,14 @@ class Outlet(Protocol):
         """Onto the bus."""
 
 
+class Host(Protocol):
+    """The process: it is told how far the camera is, and says when to stop."""
+
+    stopping: threading.Event
+    state: str
+    sequence: int
+
+
 class Delivery(Protocol):
     """Decides what is sent when. Knows no bus and no clock; called from one thread."""
 
@@ -47,8 +52,15 @@ class Delivery(Protocol):
     def sent_again(self) -> int:
         """How often something was sent again."""
 
+    @property
+    def wants_frame(self) -> bool:
+        """Whether the next frame is to be offered."""
+
+    def offer(self, frame: SourceFrame | None, now_s: float) -> None:
+        """Take the next frame, or the word that there is none left."""
+
     def step(self, now_s: float) -> float:
-        """Send what is to be sent now; in how many seconds to come back if nothing happens before."""
+        """Send what is due; in how many seconds to come back if nothing happens before."""
 
     def answered(self, service: str, sequence: int) -> None:
         """A service has done its part of a frame."""
