@@ -10,9 +10,9 @@ from schemas import topics
 from schemas.codec import encode
 from schemas.records import EndOfInput
 from services.camera.configured_source import open_configured_source
+from services.camera.delivery import Delivery, Host, Parcel
 from services.camera.frame_records import frame_records
 from services.camera.lossless import LosslessDelivery
-from services.camera.delivery import Delivery, Host, Parcel
 from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
@@ -82,13 +82,11 @@ class CameraService:
         host.sequence = position.sequence
         for note in self._source.notes:
             self._log.warning("assumed", note=note)
-        frames = self._source.frame_count
-        self._log.info("source", name=self._source.name, frames=frames, first=position.sequence + 1)
+        self._log.info("source", name=self._source.name, frames=self._source.frame_count, first=host.sequence + 1)
         if not position.ended:
-            on_read_ms = partial(self.metrics.observe_ms, "read")
-            with Prefetch(self._source, position.sequence + 1, on_read_ms) as ahead:
+            with Prefetch(self._source, host.sequence + 1, partial(self.metrics.observe_ms, "read")) as ahead:
                 self._wait_for_services(host)
-                delivery = self._delivery(position.sequence + 1)
+                delivery = self._delivery(host.sequence + 1)
                 self._deliver(ahead, delivery, host)
                 if ahead.failure is not None:
                     raise ahead.failure

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from schemas.records import CameraCalibration, Image
-from services.camera.lossless import LosslessDelivery
 from services.camera.delivery import Delivery, Parcel
+from services.camera.lossless import LosslessDelivery
 from services.camera.pacing import Pacing
 from services.camera.position import Position, PositionFile
 from services.camera.realtime import RealtimeDelivery
