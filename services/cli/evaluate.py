@@ -11,11 +11,7 @@ from rich.console import Console
 from services.cli.run_folder import CONFIG_NAME, newest_run_folder
 from services.cli.run_results import USAGE_NAME, print_summary, read_usage
 from services.evaluation.alignment import Alignment
-from services.evaluation.plots import plot_trajectory
-from services.evaluation.report import RunOutcome, describe_error, read_report
-from services.evaluation.run_folder import REPORT_NAME, evaluate_run
-from services.evaluation.trajectory_error import trajectory_error
-from services.evaluation.trajectory_files import read_trajectory
+from services.evaluation.run_outcome import RunOutcome
 from services.runtime.config import load_config
 from services.runtime.errors import InputError
 
@@ -49,17 +45,27 @@ def evaluate(
         return
     if truth is None:
         raise InputError(f"{estimate}: expected --truth with the true trajectory, or the folder of a run instead")
+    from services.evaluation.report import describe_error
+    from services.evaluation.trajectory_error import trajectory_error
+    from services.evaluation.trajectory_files import read_trajectory
+
     estimated, true = read_trajectory(estimate, times=times), read_trajectory(truth, times=times)
     error = trajectory_error(estimated, true, align, frames=frames, delta_frames=delta)
     print(json.dumps(describe_error(error), indent=2))
     if plot is not None:
+        from services.evaluation.plots import plot_trajectory
+
         plot_trajectory(estimated, plot, true, error)
 
 
 def _evaluate_folder(given: Path, recover: bool) -> None:
+    from services.evaluation.report import read_report
+    from services.evaluation.run_folder import evaluate_run
+
     folder = newest_run_folder(given)
     config = load_config(folder / CONFIG_NAME)
-    before = read_report(folder / REPORT_NAME) if (folder / REPORT_NAME).is_file() else {}
+    report_file = folder / "report.json"
+    before = read_report(report_file) if report_file.is_file() else {}
     outcome = RunOutcome(
         session=before.get("session", ""),
         failure=before.get("failure", ""),

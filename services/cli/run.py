@@ -78,7 +78,8 @@ def run_input(config: Config, serve: bool) -> None:
     # Whoever ends this process politely means the whole run.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with ZenohBus(config.bus, lossless=False) as bus:
-        PipelineRun(config, Supervision(config.run.out, config), bus, Console(), frames).drive(serve)
+        services = Supervision(config.run.out, config, attached=True)
+        PipelineRun(config, services, bus, Console(), frames).drive(serve)
 
 
 def _make_absolute(config: Config) -> None:

@@ -4,7 +4,7 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,34 +12,13 @@ import numpy as np
 
 from schemas.records import DensityLevel, TrackingState
 from services.evaluation.alignment import Alignment
+from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import SessionLog
 from services.evaluation.trajectory import Trajectory
 from services.evaluation.trajectory_error import TrajectoryError, trajectory_error
 from services.runtime.errors import InputError, KinemapError
 
 REPORT_VERSION = 1
-
-Report = dict[str, Any]
-
-
-@dataclass
-class ServiceUsage:
-    """What the heartbeats of one service said over a run; `metrics` are the last ones."""
-
-    peak_memory_bytes: int = 0
-    starts: int = 0
-    metrics: dict[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class RunOutcome:
-    """How the run itself went; `failure` is the one line of what ended it early, empty where nothing did."""
-
-    session: str = ""
-    failure: str = ""
-    wall_s: float | None = None
-    every_frame: bool = True
-    """whether every frame of the input has to be recorded and answered (lossless)"""
 
 
 def build_report(

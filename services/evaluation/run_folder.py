@@ -6,7 +6,8 @@ from pathlib import Path
 
 from services.evaluation.alignment import Alignment
 from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
-from services.evaluation.report import Report, RunOutcome, ServiceUsage, build_report, stage_times, write_report
+from services.evaluation.report import build_report, stage_times, write_report
+from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import SessionLog
 from services.evaluation.session_reading import read_session
 from services.evaluation.trajectory import Trajectory
@@ -15,7 +16,6 @@ from services.evaluation.trajectory_files import read_trajectory, write_tum
 from services.runtime.errors import InputError
 
 TRAJECTORY_NAME = "trajectory.tum"
-REPORT_NAME = "report.json"
 
 
 def evaluate_run(
@@ -33,7 +33,7 @@ def evaluate_run(
     _, log = read_session(session, recover=recover)
     trajectory = _exported_trajectory(folder)
     report = build_report(log, trajectory, services, outcome)
-    write_report(report, folder / REPORT_NAME)
+    write_report(report, folder / "report.json")
     _draw(folder, log, trajectory, report, services)
     return report
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A report in a few lines, for people."""
 
-from services.evaluation.report import Report
+from services.evaluation.run_outcome import Report
 
 _MEBIBYTE = 1024 * 1024
 

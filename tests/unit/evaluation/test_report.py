@@ -20,14 +20,12 @@ from schemas.records import (
 )
 from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
 from services.evaluation.report import (
-    Report,
-    RunOutcome,
-    ServiceUsage,
     build_report,
     read_report,
     stage_times,
     write_report,
 )
+from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import NO_MAP, SessionLog
 from services.evaluation.summary import summary_rows
 from services.evaluation.trajectory import Trajectory

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line when something is wrong: one line on standard error, an exit code, nothing lost."""
+
+import json
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+import pytest
+
+from services.cli.app import main
+from services.runtime.session_file import SessionFile
+
+
+class Ended(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+Kinemap = Callable[..., Ended]
+
+
+@pytest.fixture
+def kinemap(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Kinemap:
+    """Runs `kinemap ARGUMENTS` in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "200")
+
+    def run(*arguments: str | Path) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["kinemap", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        code = ended.value.code
+        return Ended(int(code or 0), *capsys.readouterr())
+
+    return run
+
+
+def _one_line(ended: Ended, *parts: str, code: int = 2) -> None:
+    assert ended.code == code, ended
+    assert ended.err.startswith("kinemap: error: "), ended.err
+    assert ended.err.count("\n") == 1, ended.err
+    for part in parts:
+        assert part in ended.err, ended.err
+
+
+def _images(folder: Path, count: int = 4) -> Path:
+    folder.mkdir(parents=True)
+    for index in range(count):
+        cv2.imwrite(str(folder / f"{index:06d}.png"), np.full((48, 64), 40 * index, np.uint8))
+    return folder
+
+
+def _kitti(folder: Path, calibration: str = "P0: 50 0 32 0 0 50 24 0 0 0 1 0\n") -> Path:
+    _images(folder / "image_0")
+    (folder / "calib.txt").write_text(calibration)
+    (folder / "times.txt").write_text("".join(f"{0.1 * index}\n" for index in range(4)))
+    return folder
+
+
+@pytest.mark.parametrize(
+    "command", ["run", "up", "down", "status", "record", "replay", "export", "evaluate", "config", "doctor"]
+)
+def test_every_command_explains_itself(kinemap: Kinemap, command: str) -> None:
+    ended = kinemap(command, "--help")
+    assert ended.code == 0
+    assert "Usage: kinemap" in ended.out
+
+
+def test_an_input_that_is_not_there(kinemap: Kinemap) -> None:
+    _one_line(kinemap("run", "/no/such/folder"), "/no/such/folder", "expected a KITTI odometry folder")
+    assert not Path("runs").exists()
+
+
+def test_an_empty_folder(kinemap: Kinemap) -> None:
+    Path("empty").mkdir()
+    _one_line(kinemap("run", "empty"), "the folder is empty")
+
+
+def test_a_calibration_with_eleven_numbers(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("k"), "P0: 50 0 32 0 0 50 24 0 0 0 1\n")
+    _one_line(kinemap("run", folder), "calib.txt", "11", "12")
+
+
+def test_an_image_of_another_size(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("k"))
+    cv2.imwrite(str(folder / "image_0" / "000002.png"), np.zeros((50, 64), np.uint8))
+    _one_line(kinemap("run", folder), "000002.png", "64x50", "64x48")
+
+
+def test_a_folder_that_holds_something_is_never_written_to(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("k"))
+    Path("out").mkdir()
+    Path("out/mine.txt").write_text("precious")
+    _one_line(kinemap("run", folder, "--out", "out"), "out: the folder is not empty")
+    assert [path.name for path in Path("out").iterdir()] == ["mine.txt"]
+
+
+def test_a_port_in_use_is_said_before_anything_is_written(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("k"))
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        _one_line(kinemap("run", folder, "--port", str(port)), f"port {port} on 127.0.0.1 is in use")
+    assert not Path("runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        (("run", "--stage", "parked"), ("slam.stage", "'parked'")),
+        (("run", "--set", "slam"), ("expected SECTION.FIELD=VALUE",)),
+        (("run", "--config", "none.toml"), ("none.toml", "cannot be read")),
+        (("run", "--frames", "0"), ("camera.max_frames",)),
+        (("config", "dump", "--set", "delivery.window=0"), ("delivery.window", "greater than or equal to 1")),
+        (("replay", "none.mcap"), ("none.mcap: no such file",)),
+        (("replay", "none.mcap", "--speed", "nan"), ("--speed nan: expected a number above 0",)),
+        (("evaluate", "none.tum", "--truth", "none.txt"), ("none.tum: no such file",)),
+        (("evaluate", "none.tum"), ("expected --truth",)),
+        (("export", "nowhere"), ("nowhere: no run here",)),
+        (("status",), ("no run in",)),
+        (("down",), ("no run in",)),
+        (("record", "x", "--bus"), ("expected either an input or --bus",)),
+    ],
+)
+def test_wrong_arguments(kinemap: Kinemap, arguments: tuple[str, ...], parts: tuple[str, ...]) -> None:
+    _one_line(kinemap(*arguments), *parts)
+
+
+def test_an_unknown_flag_is_one_of_the_parser(kinemap: Kinemap) -> None:
+    assert kinemap("run", "--nonsense").code == 2
+    assert kinemap("nonsense").code == 2
+
+
+def test_record_writes_a_whole_session_and_overwrites_none(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("k"))
+    ended = kinemap("record", folder, "--file", "a/b.mcap")
+    assert (ended.code, ended.out) == (0, "a/b.mcap: 13 messages\n")
+    with SessionFile(Path("a/b.mcap")) as session:
+        counts = session.message_counts()
+    assert counts == {"camera/calibration": 4, "camera/end": 1, "camera/image": 4, "camera/manifest": 4}
+    before = Path("a/b.mcap").read_bytes()
+    _one_line(kinemap("record", folder, "--file", "a/b.mcap"), "exists, expected the name of a new file")
+    assert Path("a/b.mcap").read_bytes() == before
+
+
+def test_a_recording_that_was_cut_off(kinemap: Kinemap) -> None:
+    kinemap("record", _kitti(Path("k")), "--file", "whole.mcap")
+    data = Path("whole.mcap").read_bytes()
+    Path("cut.mcap").write_bytes(data[: int(0.6 * len(data))])
+    for command in (("replay", "cut.mcap"), ("run", "cut.mcap"), ("replay", "cut.mcap", "--camera")):
+        _one_line(kinemap(*command), "cut.mcap")
+    assert len(Path("cut.mcap").read_bytes()) == int(0.6 * len(data))
+
+
+def test_a_topic_that_was_not_recorded(kinemap: Kinemap) -> None:
+    kinemap("record", _kitti(Path("k")), "--file", "a.mcap")
+    _one_line(kinemap("replay", "a.mcap", "--topic", "slam/pose"), "slam/pose: not in a.mcap", "camera/image")
+
+
+def test_evaluate_prints_errors_with_their_coverage(kinemap: Kinemap) -> None:
+    truth = [f"{0.1 * i:.1f} {i} 0 {i * i} 0 0 0 1\n" for i in range(10)]
+    Path("truth.tum").write_text("".join(truth))
+    Path("estimate.tum").write_text("".join(truth[2:]))
+    ended = kinemap("evaluate", "estimate.tum", "--truth", "truth.tum", "--plot", "both.png")
+    error = json.loads(ended.out)
+    assert ended.code == 0
+    assert error["ate_m"]["rmse"] == pytest.approx(0.0, abs=1e-6)
+    assert error["coverage"] == pytest.approx(0.8)
+    assert Path("both.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_nonsense_trajectories(kinemap: Kinemap) -> None:
+    Path("empty.tum").write_text("")
+    Path("nan.tum").write_text("0.1 nan 0 0 0 0 0 1\n")
+    Path("two.tum").write_text("0.1 0 0 0 0 0 0 1\n0.2 1 0 0 0 0 0 1\n")
+    Path("good.tum").write_text("".join(f"{i} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
+    Path("late.tum").write_text("".join(f"{i + 100} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
+    for name, part in (("empty", "holds no poses"), ("nan", "'nan'"), ("two", "2 poses"), ("late", "0 poses of")):
+        _one_line(kinemap("evaluate", f"{name}.tum", "--truth", "good.tum"), part)
+
+
+def test_the_dump_can_be_given_back(kinemap: Kinemap) -> None:
+    first = kinemap("config", "dump", "--set", "slam.stage=base")
+    Path("c.toml").write_text(first.out)
+    again = kinemap("config", "dump", "--config", "c.toml")
+    assert again.code == 0
+    assert 'stage = "base"' in again.out
+    assert [line for line in again.out.splitlines() if not line.startswith("#")] == [
+        line for line in first.out.splitlines() if not line.startswith("#")
+    ]
