@@ -71,8 +71,9 @@ class Actor:
         pose = planar_pose(position[:2], heading)
         pose[2, 3] = position[2]
         centre = position + np.array([0.0, 0.0, 0.5 * self.size_m[2]])
-        velocity = step * (speed / float(np.hypot(step[0], step[1])))
-        return ActorState(pose, centre, heading, velocity, speed >= MOVING_M_S, gone, bool(self.path.inside(gone)))
+        velocity = step * (speed / (2.0 * _HALF_STEP_M))
+        moving = float(np.linalg.norm(velocity)) >= MOVING_M_S
+        return ActorState(pose, centre, heading, velocity, moving, gone, bool(self.path.inside(gone)))
 
     def vertices_in_world(self, state: ActorState) -> Floats:
         """Its mesh's vertices, (V, 3), in a state of its own."""

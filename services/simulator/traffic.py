@@ -173,10 +173,11 @@ class TrafficPlanner:
     def _starting_car(self, number: int) -> Route:
         """Parked, then off when the camera comes near; on the left it drives towards the camera."""
         s, _ = self._meeting()
-        direction = 1.0 if number % 3 == 2 else -1.0
+        direction = 1.0 if self._rng.random() < 0.3 else -1.0
         if self._road.near_junction(s, 12.0):
             s += 24.0
-        begin = self._ego.time_s(s - float(self._rng.uniform(24.0, 44.0)))
+        ahead = self._rng.uniform(12.0, 26.0) if direction < 0 else self._rng.uniform(20.0, 32.0)
+        begin = self._ego.time_s(s - float(ahead))
         cruise = self._options.speed_m_s * float(self._rng.uniform(0.7, 1.0) if direction < 0 else 1.3)
         speed = SpeedProfile([(0.0, 0.0), (max(begin, 0.1), 0.0), (max(begin, 0.1) + cruise / 1.9, cruise)])
         side = -direction

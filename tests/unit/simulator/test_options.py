@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options of a drive: what is refused, and how."""
+
+from collections import defaultdict
+
+import pytest
+
+from services.runtime.errors import InputError
+from services.simulator.camera import EgoTrajectory
+from services.simulator.options import StreetOptions
+from services.simulator.road import Road
+from services.simulator.traffic import TrafficPlanner
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("seed", -1),
+        ("seed", 1.5),
+        ("width", 0),
+        ("height", 100_000),
+        ("fx_px", -380.0),
+        ("frames", 0),
+        ("rate_hz", 0.0),
+        ("rate_hz", float("nan")),
+        ("speed_m_s", float("inf")),
+        ("camera_height_m", -1.65),
+        ("parked_cars", -3),
+        ("walking_people", "many"),
+        ("threads", True),
+        ("empty_start_m", 1000.0),
+    ],
+)
+def test_bad_option_is_refused_in_one_line_that_names_it(name: str, value: object) -> None:
+    with pytest.raises(InputError) as caught:
+        StreetOptions(**{name: value})  # type: ignore[arg-type]
+    message = str(caught.value)
+    assert name in message
+    assert repr(value) in message
+    assert "expected" in message
+    assert "\n" not in message
+
+
+def test_more_traffic_than_the_street_holds_is_refused() -> None:
+    options = StreetOptions(crossing_cars=60)
+    road = Road(options.drive_length_m, options.seed)
+    planner = TrafficPlanner(options, road, EgoTrajectory(options, road), defaultdict(int))
+    with pytest.raises(InputError, match=r"crossing_cars=60: expected at most \d+ on this street"):
+        planner.plan()
+
+
+def test_timestamps_do_not_drift() -> None:
+    assert StreetOptions().timestamp_ns(319) == 31_900_000_000
+    thirds = StreetOptions(rate_hz=30.0)
+    assert [thirds.timestamp_ns(i) for i in (0, 1, 2, 3, 300)] == [0, 33_333_333, 66_666_666, 100_000_000, 10**10]
