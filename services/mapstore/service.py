@@ -9,7 +9,7 @@ from services.mapstore.base_pose import BasePose
 from services.mapstore.density import DynamicDensity
 from services.mapstore.gateway.live_map import LiveMap
 from services.mapstore.gateway.server import Gateway
-from services.mapstore.map_view import MapView
+from services.mapstore.map_view import NOT_YET, MapView
 from services.mapstore.store import MapStore
 from services.runtime.config import Config
 from services.runtime.errors import ResourceError
@@ -77,8 +77,8 @@ class MapstoreService(FrameService):
         return []
 
     def last_sequence(self) -> int:
-        """The last frame in the file."""
-        return self._store.last_sequence
+        """The last frame that was surely answered: a kill may come when the file has a frame and nobody knows yet."""
+        return max(NOT_YET, self._store.last_sequence - 1)
 
     def snapshot(self) -> State:
         """The map itself is in the file; this lets the loop keep what was sent for the last frames beside it."""

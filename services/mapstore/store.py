@@ -34,13 +34,18 @@ class MapStore:
 
     def load(self) -> MapState:
         """The map that is in the file."""
-        return self._guarded(lambda: read_map(self._connection))
+        state = self._guarded(lambda: read_map(self._connection))
+        state.session = self._session
+        return state
 
     def put(self, sequence: int, frame: TrackedFrame, update: MapUpdate, density: Density) -> None:
-        """One frame, all of it or nothing. Raises InputError when the map is another session's or the frame is in it
-        already, ResourceError when the disk is full; the frames before stay readable then."""
+        """One frame, all of it or nothing.
+
+        Raises InputError when the frame is in the map already, ResourceError when the disk is full; the frames before
+        stay readable then.
+        """
         if sequence <= self.last_sequence:
-            raise InputError(f"{self.path}: frame {sequence} is in it already, expected one after {self.last_sequence}")
+            raise InputError(f"{self.path}: frame {sequence}, expected one after {self.last_sequence}")
         self._guarded(lambda: self._put_frame(sequence, frame, update, density))
         self.last_sequence = sequence
 

@@ -88,7 +88,8 @@ def maps(draw: st.DrawFn) -> tuple[MapUpdate, int]:
         *range(keyframes),
     )
     poses = np.concatenate(
-        [rng.normal(0, 4, (keyframes, 3)), rng.normal(0, 1, (keyframes, 4)), rng.uniform(0.3, 3, (keyframes, 1))], axis=1
+        [rng.normal(0, 4, (keyframes, 3)), rng.normal(0, 1, (keyframes, 4)), rng.uniform(0.3, 3, (keyframes, 1))],
+        axis=1,
     )
     poses[:, 3:7] /= np.linalg.norm(poses[:, 3:7], axis=1, keepdims=True)
     return replace(update, keyframe_pose=poses, keyframe_map_id=rng.integers(1, 3, keyframes)), frames
