@@ -35,6 +35,9 @@ class InstanceBackend(Protocol):
             InputError: what the backend reads cannot be used.
         """
 
+    def close(self) -> None:
+        """Let go of files and devices."""
+
 
 def skipped_frame(image: Image) -> Instances:
     """The word that this frame was not segmented."""
@@ -69,8 +72,10 @@ class InstanceFilter:
         """
         shown = np.zeros(labels.shape, dtype=np.uint32)
         kept = []
+        # Scores travel as 32 bits: one that is on the edge must fall on the same side when it was recorded.
+        min_score = np.float32(self.min_score)
         for candidate in candidates:
-            if candidate.category not in self.categories or candidate.score < self.min_score:
+            if candidate.category not in self.categories or np.float32(candidate.score) < min_score:
                 continue
             mask = labels == candidate.label
             x, y, width, height = cv2.boundingRect(mask.view(np.uint8))

@@ -45,6 +45,9 @@ class LabelImages:
             return skipped_frame(image)
         return self._filter.choose(image.timestamp_ns, _read_labels(path, image.pixels.shape[:2]), candidates)
 
+    def close(self) -> None:
+        """Nothing is held open."""
+
 
 def _read_labels(path: Path, shape: tuple[int, ...]) -> npt.NDArray[np.unsignedinteger]:
     try:

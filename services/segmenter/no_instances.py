@@ -12,3 +12,6 @@ class NoInstances:
 
     def segment(self, image: Image, context: FrameContext) -> Instances:
         return skipped_frame(image)
+
+    def close(self) -> None:
+        """Nothing is held open."""

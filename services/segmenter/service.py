@@ -15,6 +15,7 @@ from services.runtime.service import Bundle, FrameService, Outgoing
 from services.segmenter.backend import FrameContext, InstanceBackend, InstanceFilter
 from services.segmenter.label_images import LabelImages
 from services.segmenter.no_instances import NoInstances
+from services.segmenter.recorded import SESSION_SUFFIX, RecordedInstances
 from services.segmenter.truth import TrueLabels
 
 NAME = "segmenter"
@@ -22,17 +23,31 @@ _FOLDER = "instances"
 
 
 def choose_backend(config: Config) -> InstanceBackend:
-    """The backend that the configuration names; `auto` looks for label images first, then takes the frames' truth.
+    """The backend that the configuration names.
+
+    `auto` takes, in this order: label images where there is a folder of them, what a recorded session holds when that
+    is the input, and the truth that frames carry.
 
     Raises:
-        InputError: the folder of label images is missing or cannot be used.
+        InputError: what the backend reads is missing or cannot be used.
     """
     settings = config.segmenter
+    source = Path(config.camera.input)
     chosen = InstanceFilter(frozenset(settings.categories), settings.min_score)
-    folder = settings.instances or Path(config.camera.input) / _FOLDER
-    if settings.backend == "masks" or (settings.backend == "auto" and (settings.instances or folder.is_dir())):
-        return LabelImages(folder, chosen)
-    return NoInstances() if settings.backend == "none" else TrueLabels(chosen)
+    folder = settings.instances or source / _FOLDER
+    backend = settings.backend
+    if backend == "auto":
+        is_session = source.suffix.lower() == SESSION_SUFFIX
+        backend = "masks" if settings.instances or folder.is_dir() else "recorded" if is_session else "truth"
+    match backend:
+        case "masks":
+            return LabelImages(folder, chosen)
+        case "recorded":
+            return RecordedInstances(source, chosen)
+        case "truth":
+            return TrueLabels(chosen)
+        case _:
+            return NoInstances()
 
 
 class SegmenterService(FrameService):
@@ -57,6 +72,10 @@ class SegmenterService(FrameService):
     def metrics(self) -> dict[str, float]:
         """How many frames had no masks."""
         return {"frames_without_masks": float(self._backend.missing_frames)}
+
+    def close(self) -> None:
+        """Let go of what the backend holds."""
+        self._backend.close()
 
 
 def create(config: Config) -> SegmenterService:

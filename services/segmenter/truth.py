@@ -28,3 +28,6 @@ class TrueLabels:
             )
         candidates = [Candidate(item.instance_id, item.category, 1.0) for item in truth.objects]
         return self._filter.choose(image.timestamp_ns, truth.labels, candidates)
+
+    def close(self) -> None:
+        """Nothing is held open."""

@@ -14,10 +14,10 @@ class SegmenterConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    backend: Literal["auto", "masks", "truth", "none"] = Field(
+    backend: Literal["auto", "masks", "recorded", "truth", "none"] = Field(
         "auto",
-        description="masks: label images beside the input; truth: the simulator's; none: every frame is left out; "
-        "auto: masks where the folder exists, else truth where the frame has it, else none",
+        description="masks: label images beside the input; recorded: those of the session that is the input; truth: "
+        "the simulator's; none: every frame is left out; auto: the first of these that the input has",
     )
     instances: Path | None = Field(
         None, description="folder of label images and instances.json; <input>/instances when not given"

@@ -62,6 +62,12 @@ def test_auto_takes_the_masks_beside_the_input(instances: Path, tmp_path: Path) 
     assert isinstance(choose_backend(_config(str(tmp_path), backend="none")), NoInstances)
 
 
+def test_auto_takes_the_instances_of_a_session(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none\.mcap: no such file"):
+        choose_backend(_config(str(tmp_path / "none.mcap")))
+    assert isinstance(choose_backend(_config(str(tmp_path / "none.mcap"), backend="truth")), TrueLabels)
+
+
 def test_masks_that_were_asked_for_must_be_there(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="instances: no such folder"):
         choose_backend(_config(str(tmp_path), backend="masks"))
