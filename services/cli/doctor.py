@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.cli.doctor_checks import Check, all_checks
+from services.cli.doctor_checks import all_checks
+from services.cli.doctor_packages import Check
 from services.cli.flags import ConfigFlag, resolve_config
 
 _MARKS = {True: "[green]ok     [/green]", False: "[red]missing[/red]", None: "[cyan]note   [/cyan]"}

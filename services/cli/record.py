@@ -28,8 +28,8 @@ _CHUNK_BYTES = 4 << 20
 _CHUNK_S = 1.0
 _LISTEN_S = 0.1
 
-Messages = Iterator[RecordedMessage | None]
-"""None: nothing new at this moment"""
+Messages = Iterator[tuple[str, RecordedMessage] | None]
+"""The session and one message of it; None: nothing new at this moment"""
 
 
 def record(
@@ -57,6 +57,8 @@ def record(
     if bus:
         with ZenohBus(resolved.bus, lossless=False) as entered:
             subscription = entered.subscribe(topic for topic in topics.TOPICS if topic.recorded)
+            where = resolved.bus.router or resolved.bus.entry_point
+            Console().print(f"listening on {where} until the input's end or Ctrl-C", highlight=False, soft_wrap=True)
             count = _write(file, resolved, messages_of_bus(subscription, resolved, stop))
     else:
         count = _write(file, resolved, messages_of_input(resolved, stop))
@@ -74,10 +76,12 @@ def messages_of_input(config: Config, stop: threading.Event) -> Messages:
         while not stop.is_set() and (frame := source.frame(sequence)) is not None:
             timestamp_ns = frame.timestamp_ns
             for topic, frame_record in frame_records(frame, source):
-                yield RecordedMessage(topic.key, sequence, timestamp_ns, encode(topic, frame_record))
+                payload = encode(topic, frame_record)
+                yield config.run.session, RecordedMessage(topic.key, sequence, timestamp_ns, payload)
             sequence += 1
         end = EndOfInput(timestamp_ns + 1, sequence)
-        yield RecordedMessage(topics.END.key, sequence, end.timestamp_ns, encode(topics.END, end))
+        payload = encode(topics.END, end)
+        yield config.run.session, RecordedMessage(topics.END.key, sequence, end.timestamp_ns, payload)
     finally:
         source.close()
 
@@ -96,26 +100,25 @@ def messages_of_bus(subscription: Subscription, config: Config, stop: threading.
         session = session or message.envelope.session
         if message.envelope.session == session:
             ended = ended or message.topic is topics.END
-            envelope = message.envelope
-            yield RecordedMessage(
-                key_of(message.topic, message.suffix), envelope.sequence, envelope.timestamp_ns, message.payload
-            )
+            _, sequence, timestamp_ns = message.envelope
+            key = key_of(message.topic, message.suffix)
+            yield session, RecordedMessage(key, sequence, timestamp_ns, message.payload)
 
 
 def _write(file: Path, config: Config, messages: Messages) -> int:
     """Write chunk by chunk; what was written stays readable whatever ends it."""
     options = WriterOptions(config.recorder.zstd_level, config.recorder.reserve_mb << 20)
+    config_json = json.dumps(dump_config(config), sort_keys=True)
     writer: SessionWriter | None = None
     chunk: list[RecordedMessage] = []
     size, count, begun_s = 0, 0, time.monotonic()
     try:
         for message in messages:
             if message is not None:
-                writer = writer or SessionWriter(
-                    file, config.run.session, json.dumps(dump_config(config), sort_keys=True), options
-                )
-                chunk.append(message)
-                size += len(message.payload)
+                session, recorded = message
+                writer = writer or SessionWriter(file, session, config_json, options)
+                chunk.append(recorded)
+                size += len(recorded.payload)
                 count += 1
             now_s = time.monotonic()
             if writer is not None and chunk and (size >= _CHUNK_BYTES or now_s - begun_s >= _CHUNK_S):

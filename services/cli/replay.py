@@ -23,6 +23,10 @@ from services.runtime.errors import InputError
 from services.runtime.session_file import SessionFile
 from services.runtime.zenoh_bus import ZenohBus, open_session
 
+# Whoever is on the bus looks for its entry point every half a second.
+_LISTENERS_S = 1.0
+_SERVICE_PATIENCE_S = 15.0
+
 
 def replay(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="Recorded session (.mcap).")],
@@ -59,9 +63,32 @@ def replay(
         pace: Pace = RecordedRate(speed, stop)
         if wait_for:
             pace = AsAnswered(bus, session.session, wait_for, stop=stop)
+        _let_listeners_in(bus, wait_for or [], stop)
         count = Replayer(session, bus).play(pace, keys)
         ended = "stopped" if stop.is_set() else "done"
         Console().print(f"{ended}: {count} messages of session {session.session}", highlight=False, soft_wrap=True)
+
+
+def _let_listeners_in(bus: Bus, services: list[str], stop: threading.Event) -> None:
+    """Wait until `services` live; others who listen already have a second to find this end of the bus."""
+    missing, all_there = set(services), threading.Event()
+
+    def changed(name: str, alive: bool) -> None:
+        if alive:
+            missing.discard(name)
+        if not missing:
+            all_there.set()
+
+    bus.watch_alive(changed)
+    if services:
+        patience_s = _SERVICE_PATIENCE_S
+        while patience_s > 0 and not all_there.wait(_LISTENERS_S) and not stop.is_set():
+            patience_s -= _LISTENERS_S
+        if missing and not stop.is_set():
+            raise InputError(
+                f"--wait-for {', '.join(sorted(missing))}: does not live on this bus; is `kinemap up` running?"
+            )
+    stop.wait(_LISTENERS_S)
 
 
 def _known(topics: list[str] | None, session: SessionFile) -> list[str] | None:
