@@ -117,7 +117,7 @@ def test_one_that_always_crashes_ends_the_waiting(config: Config, supervision: S
 def test_one_that_is_never_ready_is_named(config: Config) -> None:
     silent = ServiceProcess("silent", "services.runtime.entry_point", 30)
     supervision = Supervision(config.run.out, config, processes=(TABLE[1], silent))
-    with pytest.raises(KinemapError, match="not ready within 3 s: silent$"):
+    with pytest.raises(KinemapError, match=r"not ready within 3 s: silent$"):
         supervision.up(ready_within_s=3)
     assert left(config) == []
 
