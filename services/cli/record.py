@@ -27,6 +27,8 @@ from services.runtime.zenoh_bus import ZenohBus
 _CHUNK_BYTES = 4 << 20
 _CHUNK_S = 1.0
 _LISTEN_S = 0.1
+# slam and mapstore have a last word under the end's sequence number.
+_AFTER_END_S = 1.0
 
 Messages = Iterator[tuple[str, RecordedMessage] | None]
 """The session and one message of it; None: nothing new at this moment"""
@@ -91,7 +93,7 @@ def messages_of_bus(subscription: Subscription, config: Config, stop: threading.
     session = config.run.session if "session" in config.run.model_fields_set else None
     ended = False
     while not stop.is_set():
-        message = subscription.receive(_LISTEN_S)
+        message = subscription.receive(_AFTER_END_S if ended else _LISTEN_S)
         if message is None:
             if ended:
                 return

@@ -28,9 +28,11 @@ STATE_COLOURS: dict[MotionState, str] = {
 
 _LEVEL_COLOURS = {DensityLevel.UNKNOWN: "#999999", DensityLevel.LOW: "#2e8b57", DensityLevel.HIGH: "#d62728"}
 
-# Points far outside the path (a badly triangulated one can be kilometres away) would shrink the street to a dot.
-_MARGIN = 0.25
-_LEAST_MARGIN = 15.0
+# A badly triangulated point can be kilometres away and would shrink the street to a dot: the view holds the path and
+# all but a few percent of the points, and reaches no farther from the path than a share of the path's own extent.
+_OUTLIERS = 2.0
+_FARTHEST = 0.4
+_MARGIN = 0.05
 
 
 def plot_trajectory(
@@ -83,9 +85,9 @@ def plot_map(points: Points, trajectory: Trajectory | None, path: Path, unit: st
     if trajectory is not None:
         path_in_plane = plane.project(trajectory.positions_m)
         axes.plot(*path_in_plane.T, color="black", linewidth=1.2, label="camera")
-        _limit_to(axes, path_in_plane)
+        _limit_to(axes, path_in_plane, projected)
     axes.set_title(f"map: {len(points.landmark_id)} landmarks")
-    _finish_top_view(axes, plane, unit)
+    _finish_top_view(axes, plane, unit, marker_scale=5.0)
     _save(figure, path)
 
 
@@ -139,21 +141,28 @@ def _figure(height_in: float = 7.0) -> Figure:
     return figure
 
 
-def _limit_to(axes: Axes, path_in_plane: npt.NDArray[np.float64]) -> None:
-    low, high = path_in_plane.min(axis=0), path_in_plane.max(axis=0)
+def _limit_to(axes: Axes, camera: npt.NDArray[np.float64], points: npt.NDArray[np.float64]) -> None:
+    low, high = camera.min(axis=0), camera.max(axis=0)
     extent = float((high - low).max())
-    margin = max(_MARGIN * extent, _LEAST_MARGIN if extent > _LEAST_MARGIN else extent)
-    if extent > 0.0:
-        axes.set_xlim(low[0] - margin, high[0] + margin)
-        axes.set_ylim(low[1] - margin, high[1] + margin)
+    if extent == 0.0:
+        return
+    if len(points):
+        inner, outer = np.percentile(points, (_OUTLIERS, 100 - _OUTLIERS), axis=0)
+        low, high = (
+            np.minimum(low, np.maximum(inner, low - _FARTHEST * extent)),
+            np.maximum(high, np.minimum(outer, high + _FARTHEST * extent)),
+        )
+    margin = _MARGIN * float((high - low).max())
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
 
 
-def _finish_top_view(axes: Axes, plane: GroundPlane, unit: str) -> None:
+def _finish_top_view(axes: Axes, plane: GroundPlane, unit: str, marker_scale: float = 1.0) -> None:
     axes.set_aspect("equal", adjustable="datalim" if axes.get_autoscale_on() else "box")
     axes.set_xlabel(f"{plane.names[0]} [{unit}]")
     axes.set_ylabel(f"{plane.names[1]} [{unit}]")
     axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="best", fontsize=8, markerscale=2)
+    axes.legend(loc="best", fontsize=8, markerscale=marker_scale)
 
 
 def _save(figure: Figure, path: Path) -> None:
