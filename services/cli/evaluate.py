@@ -7,18 +7,24 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.table import Table
 
 from services.cli.run_folder import CONFIG_NAME, newest_run_folder
 from services.cli.run_results import USAGE_NAME, print_summary, read_usage
 from services.evaluation.alignment import Alignment
+from services.evaluation.comparison import compare
 from services.evaluation.run_outcome import RunOutcome
 from services.runtime.config import load_config
 from services.runtime.errors import InputError
 
 
 def evaluate(
-    estimate: Annotated[
-        Path, typer.Argument(metavar="PATH", help="Folder of a run, or a trajectory in TUM or KITTI format.")
+    paths: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="PATH...",
+            help="Folder of a run, a trajectory in TUM or KITTI format, or several folders to compare.",
+        ),
     ],
     *,
     truth: Annotated[
@@ -37,7 +43,11 @@ def evaluate(
         bool, typer.Option("--recover", help="Read what is whole of a recording that was cut off.")
     ] = False,
 ) -> None:
-    """Errors of a trajectory, coverage beside them; for a run's folder the whole report is made again."""
+    """Errors of a trajectory, coverage beside them; a run's folder gets its report anew; several stand side by side."""
+    if len(paths) > 1:
+        _compare(paths)
+        return
+    estimate = paths[0]
     if estimate.is_dir():
         if truth is not None:
             raise InputError(f"--truth {truth}: a run's folder holds its own truth, expected a trajectory file with it")
@@ -56,6 +66,22 @@ def evaluate(
         from services.evaluation.plots import plot_trajectory
 
         plot_trajectory(estimated, plot, true, error)
+
+
+def _compare(folders: list[Path]) -> None:
+    from services.evaluation.report import read_report
+
+    reports = []
+    for folder in folders:
+        if not folder.is_dir():
+            raise InputError(f"{folder}: expected the folders of runs where there is more than one path")
+        reports.append(read_report(folder / "report.json"))
+    table = Table(box=None, pad_edge=False)
+    for name in ("", *(folder.resolve().name for folder in folders)):
+        table.add_column(name, overflow="fold")
+    for row in compare(reports):
+        table.add_row(row.what, *row.values)
+    Console().print(table, highlight=False)
 
 
 def _evaluate_folder(given: Path, recover: bool) -> None:

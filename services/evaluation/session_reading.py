@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+from schemas import topics
 from schemas.codec import decode
 from schemas.topics import BY_KEY
 from services.evaluation.session_log import READ_TOPICS, SessionLog
@@ -17,6 +18,10 @@ def read_session(path: Path, recover: bool = False) -> tuple[str, SessionLog]:
     """
     log = SessionLog()
     with SessionFile(path, recover=recover) as session:
-        for message in session.messages({topic.key for topic in READ_TOPICS}):
+        keys = {topic.key for topic in READ_TOPICS}
+        if not recover and topics.TRUE_INSTANCES.key not in session.message_counts():
+            # Objects are read for the moving flag alone, and there is no truth to hold them against.
+            keys.discard(topics.OBJECTS.key)
+        for message in session.messages(keys):
             log.add(message.sequence, decode(BY_KEY[message.key], message.payload))
         return session.session, log

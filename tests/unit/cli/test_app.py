@@ -189,6 +189,13 @@ def test_nonsense_trajectories(kinemap: Kinemap) -> None:
         _one_line(kinemap("evaluate", f"{name}.tum", "--truth", "good.tum"), part)
 
 
+def test_only_runs_are_compared(kinemap: Kinemap) -> None:
+    Path("run").mkdir()
+    Path("a.tum").write_text("")
+    _one_line(kinemap("evaluate", "run", "a.tum"), "run/report.json: no such report")
+    _one_line(kinemap("evaluate", "a.tum", "run"), "a.tum: expected the folders of runs")
+
+
 def test_the_dump_can_be_given_back(kinemap: Kinemap) -> None:
     first = kinemap("config", "dump", "--set", "slam.stage=base")
     Path("c.toml").write_text(first.out)

@@ -18,6 +18,7 @@ from schemas.records import (
     TrackingState,
     TruePose,
 )
+from services.evaluation.comparison import compare
 from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
 from services.evaluation.report import (
     build_report,
@@ -214,6 +215,17 @@ def test_summary_names_what_issue_and_user_ask_for(report: Report) -> None:
     assert "sim3, 40 of 50 frames = 80.0%" in rows["ATE final"]
     assert rows["peak memory"] == "camera 86, slam 238 MiB"
     assert rows["slam"] == "21.0 ms median, 40.0 ms p95"
+
+
+def test_runs_stand_side_by_side(log: SessionLog, report: Report) -> None:
+    log.true_poses.clear()
+    other = build_report(log, None, {}, RunOutcome())
+    rows = {row.what: row.values for row in compare([report, other])}
+    assert rows["stage"] == ("moving", "moving")
+    assert rows["ATE final coverage"] == ("80.0%", "-")
+    assert rows["landmarks static"] == ("3", "3")
+    assert rows["camera/read p50/p95 [ms]"] == ("3.0/5.0", "-")
+    assert "moving flag f1" not in rows
 
 
 def test_plots_are_pictures_and_the_same_bytes_every_time(log: SessionLog, tmp_path: Path) -> None:
