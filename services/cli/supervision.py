@@ -15,7 +15,7 @@ from pathlib import Path
 
 from services.cli.leftovers import end, processes_of
 from services.cli.readiness import Readiness
-from services.cli.supervisord_client import SupervisordClient, socket_of
+from services.cli.supervisord_client import ProcessInfo, SupervisordClient, socket_of
 from services.cli.supervisord_config import run_environment, supervisord_config
 from services.runtime.config import Config
 from services.runtime.errors import InputError, KinemapError
@@ -121,18 +121,14 @@ class Supervision:
         """Every service, in the order of the table."""
         infos = {info.name: info for info in self._client.processes() or []}
         spawns = Counter(name for name, _ in self._spawns())
-        return [
-            ServiceStatus(
-                name=process.name,
-                state=info.state if (info := infos.get(process.name)) else "down",
-                pid=info.pid or None if info else None,
-                uptime_s=info.uptime_s if info else 0,
-                restarts=max(0, spawns[process.name] - 1),
-                problem="" if info is not None and info.state == "running" else self._last_words(process.name),
-                log=self.logs / f"{process.name}.log",
-            )
-            for process in self._processes
-        ]
+        return [self._status_of(name, infos.get(name), spawns[name]) for name in (row.name for row in self._processes)]
+
+    def _status_of(self, name: str, info: ProcessInfo | None, spawns: int) -> ServiceStatus:
+        log, restarts = self.logs / f"{name}.log", max(0, spawns - 1)
+        if info is None:
+            return ServiceStatus(name, "down", None, 0, restarts, self._error_of(name), log)
+        problem = "" if info.state in {"starting", "running"} or info.ended_well else self._last_words(name)
+        return ServiceStatus(name, info.state, info.pid or None, info.uptime_s, restarts, problem, log)
 
     def failure(self) -> KinemapError | None:
         """The error of a service that has given up for good, else None. A service that is being restarted has not."""
@@ -196,16 +192,16 @@ class Supervision:
             return []
         return [(name, datetime.fromisoformat(at)) for at, name in _SPAWNED.findall(text)]
 
+    def _error_of(self, name: str) -> str:
+        """The line that a service left when it gave up; empty where it left none."""
+        file = self.folder / f"{name}.error"
+        return file.read_text(encoding="utf-8", errors="replace").strip() if file.exists() else ""
+
     def _last_words(self, name: str) -> str:
         """The line that a service left when it gave up, else the last one of its log."""
-        for file in (self.folder / f"{name}.error", self.logs / f"{name}.log"):
-            try:
-                lines = file.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-            except FileNotFoundError:
-                continue
-            if lines:
-                return lines[-1]
-        return f"nothing said; see {self.logs / f'{name}.log'}"
+        log = self.logs / f"{name}.log"
+        lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines() if log.exists() else []
+        return self._error_of(name) or (lines[-1] if lines else f"nothing said; see {log}")
 
 
 def _wait(process: subprocess.Popen[bytes], within_s: float) -> None:

@@ -28,6 +28,11 @@ class ProcessInfo:
     """of its last end; -1 where a signal ended it"""
     uptime_s: int
 
+    @property
+    def ended_well(self) -> bool:
+        """It has done what it had to do."""
+        return self.state == "exited" and self.exit_code == 0
+
 
 class SupervisordClient:
     """Answers None, or False, where supervisord does not answer: that is a state of a run, no error."""

@@ -23,6 +23,7 @@ from services.runtime.session_scan import MAGIC, RECORD_HEAD_BYTES, read_footer,
 
 SESSION_METADATA = "kinemap.session"
 CONFIG_METADATA = "kinemap.config"
+_HOW_TO_RECOVER = "`python -m services.recorder.recovery FILE OUT` makes a whole session of what is there"
 _CHUNK_ERRORS = (
     McapError,
     CRCValidationError,
@@ -107,9 +108,7 @@ class SessionFile:
             except _CHUNK_ERRORS as error:
                 if not self._recover:
                     why = str(error) or type(error).__name__
-                    raise InputError(
-                        f"{self.path}: its index is damaged ({why}); recover=True (--recover) reads what is whole"
-                    ) from error
+                    raise InputError(f"{self.path}: its index is damaged ({why}); {_HOW_TO_RECOVER}") from error
         self._open_by_walk(size)
 
     def _open_by_index(self, footer: Footer, size: int) -> None:
@@ -131,7 +130,7 @@ class SessionFile:
         if not self._recover:
             raise InputError(
                 f"{self.path}: {found.problem}; {len(found.chunks)} whole chunks up to byte {found.whole_until} "
-                f"({sum(found.message_counts.values())} messages) are there: recover=True (--recover) reads them"
+                f"({sum(found.message_counts.values())} messages) are there; {_HOW_TO_RECOVER}"
             )
         self.recovered = found.problem or "its index is damaged"
         self._schemas, self._channels, self._chunks = found.schemas, found.channels, found.chunks

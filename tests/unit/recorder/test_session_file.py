@@ -10,6 +10,7 @@ from mcap.writer import CompressionType, Writer
 
 from schemas import topics
 from schemas.records import Density, Image
+from services.recorder.recovery import recover_session
 from services.recorder.session_reader import SessionReader
 from services.recorder.session_writer import SessionWriter, WriterOptions
 from services.runtime.errors import InputError, KinemapError
@@ -69,7 +70,7 @@ def test_what_is_no_session_is_one_line(tmp_path: Path) -> None:
 def test_a_cut_off_session_says_where_and_what_to_do(session: Path) -> None:
     data = session.read_bytes()
     session.write_bytes(data[: len(data) * 6 // 10])
-    with pytest.raises(InputError, match=rf"cut off at byte {len(data) * 6 // 10}, inside a .*--recover.* reads them"):
+    with pytest.raises(InputError, match=rf"cut off at byte {len(data) * 6 // 10}, inside a .*recovery FILE OUT"):
         SessionFile(session)
     with SessionFile(session, recover=True) as file:
         assert "cut off" in file.recovered
@@ -77,6 +78,20 @@ def test_a_cut_off_session_says_where_and_what_to_do(session: Path) -> None:
     expected = [message for sequence in range(6) for message in recorded_frame(sequence)]
     assert messages == expected[: len(messages)]
     assert len(messages) >= 2 * len(recorded_frame(0))
+
+
+def test_a_whole_session_can_be_made_of_a_cut_off_one(session: Path, tmp_path: Path) -> None:
+    data = session.read_bytes()
+    session.write_bytes(data[: len(data) * 6 // 10])
+    done = recover_session(session, tmp_path / "whole.mcap")
+    with SessionFile(tmp_path / "whole.mcap") as whole, SessionFile(session, recover=True) as cut:
+        assert list(whole.messages()) == list(cut.messages())
+        assert whole.session == SESSION
+    assert done.messages > 0
+    assert done.damaged_chunks == 0
+    assert "cut off" in done.why
+    with pytest.raises(InputError, match="exists"):
+        recover_session(session, tmp_path / "whole.mcap")
 
 
 def test_a_damaged_chunk_is_named_or_skipped(session: Path) -> None:
