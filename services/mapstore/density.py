@@ -13,11 +13,12 @@ from services.mapstore.map_view import MapView
 
 HIGH_FROM_POINTS = 10
 """Thesis, algorithm 5: ten moving points or more are high density."""
+_MOVING = int(MotionState.MOVING)
 _NS_PER_S = 1_000_000_000
 _FIRST_TIME_NS = -(1 << 63)
 
 
-class _Moving(NamedTuple):
+class _MovingRows(NamedTuple):
     object_id: npt.NDArray[np.uint32]
     last_seen_ns: npt.NDArray[np.int64]
 
@@ -46,13 +47,13 @@ class DynamicDensity:
         inside = here & (bound >= 0) & (distance + bound <= radius)
         crossing = np.flatnonzero(here & (bound >= 0) & ~inside & (distance <= radius + bound * (1 + 1e-9)))
         observed = int(keyframes.counts[inside].sum())
-        parts: list[_Moving] = []
+        parts: list[_MovingRows] = []
         for row in np.flatnonzero(inside).tolist():
-            if keyframes.counts[row, MotionState.MOVING]:
+            if keyframes.counts[row, _MOVING]:
                 parts.append(_moving(view, row, slice(None)))
         for row, within in self._members(view, crossing, position, radius):
             observed += int(np.count_nonzero(within))
-            if keyframes.counts[row, MotionState.MOVING]:
+            if keyframes.counts[row, _MOVING]:
                 parts.append(_moving(view, row, within))
         points, objects = _count(view, parts, window_s)
         level = DensityLevel.HIGH if points >= self._high_from_points else DensityLevel.LOW
@@ -93,15 +94,15 @@ class DynamicDensity:
         return list(zip(rows.tolist(), np.split(within, np.cumsum(sizes)[:-1]), strict=True))
 
 
-def _moving(view: MapView, row: int, within: npt.NDArray[np.bool_] | slice) -> _Moving:
+def _moving(view: MapView, row: int, within: npt.NDArray[np.bool_] | slice) -> _MovingRows:
     cluster = view.clusters[row]
-    moving = cluster.state == MotionState.MOVING
+    moving = cluster.state == _MOVING
     if not isinstance(within, slice):
         moving &= within
-    return _Moving(cluster.object_id[moving], cluster.last_seen_ns[moving])
+    return _MovingRows(cluster.object_id[moving], cluster.last_seen_ns[moving])
 
 
-def _count(view: MapView, parts: list[_Moving], window_s: float) -> tuple[int, int]:
+def _count(view: MapView, parts: list[_MovingRows], window_s: float) -> tuple[int, int]:
     """Moving points and distinct objects among them that the window lets count."""
     if not parts:
         return 0, 0

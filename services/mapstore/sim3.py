@@ -27,15 +27,22 @@ def multiply(left: Floats, right: Floats) -> Floats:
     """(..., 4) the rotation `left` after `right`."""
     lv, lw = left[..., :3], left[..., 3:]
     rv, rw = right[..., :3], right[..., 3:]
-    vector = lw * rv + rw * lv + np.cross(lv, rv)
+    vector = lw * rv + rw * lv + cross(lv, rv)
     return np.concatenate([vector, lw * rw - np.sum(lv * rv, axis=-1, keepdims=True)], axis=-1)
+
+
+def cross(left: Floats, right: Floats) -> Floats:
+    """(..., 3) cross products; numpy's own takes twice as long for few rows."""
+    lx, ly, lz = left[..., 0], left[..., 1], left[..., 2]
+    rx, ry, rz = right[..., 0], right[..., 1], right[..., 2]
+    return np.stack([ly * rz - lz * ry, lz * rx - lx * rz, lx * ry - ly * rx], axis=-1)
 
 
 def rotate(quaternion: Floats, vector: Floats) -> Floats:
     """(..., 3) vectors rotated by unit quaternions (..., 4)."""
     axis = quaternion[..., :3]
-    turned = 2.0 * np.cross(axis, vector)
-    return vector + quaternion[..., 3:] * turned + np.cross(axis, turned)
+    turned = 2.0 * cross(axis, vector)
+    return vector + quaternion[..., 3:] * turned + cross(axis, turned)
 
 
 def transform(target_from_source: Floats, points_in_source: Floats) -> Floats:

@@ -3,7 +3,7 @@
 
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from schemas.records import Density
 from services.mapstore import sim3
@@ -14,26 +14,34 @@ from services.mapstore.map_view import MapView
 Built = TypeVar("Built")
 
 
+class Moment(NamedTuple):
+    """The map after one frame, and where the robot is in it: (7,) map_from_base, None where it was not tracked."""
+
+    view: MapView
+    map_from_base: sim3.Floats | None
+
+
 class LiveMap:
     """What the gateway answers from. One thread shows views, any thread reads them."""
 
     def __init__(self, view: MapView, density: DynamicDensity, base: BasePose) -> None:
-        self._view = view
         self._density = density
         self._base = base
+        self._now = Moment(view, base.in_map(view))
+
+    @property
+    def now(self) -> Moment:
+        """The newest moment; a request reads it once, so that its answer is of one piece."""
+        return self._now
 
     @property
     def view(self) -> MapView:
-        """The newest view; a request reads it once, so that its answer is of one moment."""
-        return self._view
+        """The newest view."""
+        return self._now.view
 
     def show(self, view: MapView) -> None:
-        """Replaces the view: one reference, set at once."""
-        self._view = view
-
-    def base_pose(self, view: MapView) -> sim3.Floats | None:
-        """(7,) map_from_base, None where the newest frame was not tracked."""
-        return self._base.in_map(view)
+        """Replaces the moment: one reference, set at once."""
+        self._now = Moment(view, self._base.in_map(view))
 
     def density(self, view: MapView, position: sim3.Floats | None, radius: float, window_s: float) -> Density:
         """The density at `position` (3,) in the map frame, or nowhere."""

@@ -28,9 +28,9 @@ def router(live: LiveMap, options: MapstoreConfig) -> APIRouter:
         position = parameters.parse_pose(pose)
         radius_given = parameters.parse_radius(radius, options.density_radius)
         window_s = parameters.parse_window(window, options.density_window_s)
-        view = live.view
-        if position is None and (base := live.base_pose(view)) is not None:
-            position = base[:3]
+        view, map_from_base = live.now
+        if position is None and map_from_base is not None:
+            position = map_from_base[:3]
         answer = density_answer(view, live.density(view, position, radius_given, window_s), options.high_density_points)
         return Response(answer.model_dump_json(), media_type="application/json")
 

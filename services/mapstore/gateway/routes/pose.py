@@ -14,8 +14,8 @@ def router(live: LiveMap) -> APIRouter:
     @routes.get("/pose", summary="Where the robot is", response_model=PoseAnswer)
     async def pose() -> Response:
         """map_from_base of the newest frame; null where it was not tracked."""
-        view = live.view
-        base, camera = live.base_pose(view), view.current_pose()
+        view, base = live.now
+        camera = view.current_pose()
         answer = PoseAnswer(
             **moment(view),
             tracked=base is not None,
