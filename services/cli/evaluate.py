@@ -96,6 +96,7 @@ def _evaluate_folder(given: Path, recover: bool) -> None:
         session=before.get("session", ""),
         failure=before.get("failure", ""),
         wall_s=before.get("wall_s"),
+        driven_s=before.get("driven_s"),
         every_frame=config.delivery.mode == "lossless",
     )
     usage = read_usage(folder / USAGE_NAME)

@@ -101,6 +101,7 @@ class PipelineRun:
             session=self.config.run.session,
             failure="" if error is None else str(error),
             wall_s=wall_s,
+            driven_s=self.progress.driven_s,
             every_frame=self.config.delivery.mode == "lossless",
         )
         folder = self.config.run.out

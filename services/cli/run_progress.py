@@ -24,6 +24,9 @@ class RunProgress:
     done: bool = False
     """the camera's word that every frame was answered by every service that answers"""
     last_change_s: float | None = None
+    driven_s: float = 0.0
+    """from the first frame heard to the last"""
+    _first_s: float | None = None
     _beats: dict[str, Heartbeat] = field(default_factory=dict)
     _furthest: dict[str, int] = field(default_factory=dict)
     _pids: dict[str, set[int]] = field(default_factory=dict)
@@ -38,6 +41,8 @@ class RunProgress:
                 self.frames = sequence + 1
                 self.state = record.state.name.lower()
                 self._recent.append((now_s, self.frames))
+                self._first_s = now_s if self._first_s is None else self._first_s
+                self.driven_s = now_s - self._first_s
                 while now_s - self._recent[0][0] > _RATE_WINDOW_S and len(self._recent) > 2:
                     self._recent.popleft()
                 self.last_change_s = now_s

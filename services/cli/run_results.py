@@ -16,6 +16,7 @@ from services.runtime.errors import InputError
 
 MAP_NAME = "map.sqlite"
 USAGE_NAME = "services.json"
+_LOG_WIDTH = 160
 DEFAULT_FORMATS = ("tum", "pcd")
 
 
@@ -62,7 +63,9 @@ def read_usage(path: Path) -> dict[str, ServiceUsage]:
 
 
 def print_summary(console: Console, report: Report, folder: Path) -> None:
-    """The summary as a table."""
+    """The summary as a table; in a log, which has no width, in long lines."""
+    if not console.is_terminal:
+        console.width = _LOG_WIDTH
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")

@@ -54,7 +54,8 @@ def build_report(
             for name, usage in sorted(services.items())
         },
         "wall_s": outcome.wall_s,
-        "frames_per_s": len(log.tracked) / outcome.wall_s if outcome.wall_s else None,
+        "driven_s": outcome.driven_s,
+        "frames_per_s": (len(log.tracked) - 1) / outcome.driven_s if outcome.driven_s and log.tracked else None,
     }
 
 

@@ -24,5 +24,8 @@ class RunOutcome:
     session: str = ""
     failure: str = ""
     wall_s: float | None = None
+    """from starting the services to the last answer"""
+    driven_s: float | None = None
+    """from the first frame to the last"""
     every_frame: bool = True
     """whether every frame of the input has to be recorded and answered (lossless)"""

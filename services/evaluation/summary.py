@@ -40,8 +40,8 @@ def summary_rows(report: Report) -> list[tuple[str, str]]:
     if report["services"]:
         peak = {name: usage["peak_memory_bytes"] / _MEBIBYTE for name, usage in report["services"].items()}
         rows.append(("peak memory", ", ".join(f"{name} {size:.0f}" for name, size in peak.items()) + " MiB"))
-    if report["wall_s"]:
-        rows.append(("time", f"{report['wall_s']:.1f} s, {report['frames_per_s']:.1f} frames/s"))
+    if report["wall_s"] and report["frames_per_s"]:
+        rows.append(("time", f"{report['wall_s']:.1f} s, {report['frames_per_s']:.1f} frames/s once it ran"))
     return rows
 
 

@@ -44,6 +44,10 @@ def test_line_says_frames_rate_state_landmarks_and_density(progress: RunProgress
     assert progress.line() == "20/50 frames, 4.0 fps, tracking, 900 static 12 moving, density high"
 
 
+def test_driven_time_is_from_the_first_frame_to_the_last(progress: RunProgress) -> None:
+    assert progress.driven_s == pytest.approx(4.75)
+
+
 def test_a_frame_sent_again_moves_nothing(progress: RunProgress) -> None:
     progress.add(4, _tracked(4, TrackingState.LOST), 5.0)
     assert (progress.frames, progress.state) == (20, "tracking")

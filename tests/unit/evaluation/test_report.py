@@ -107,7 +107,7 @@ USAGE = {
 
 @pytest.fixture
 def report(log: SessionLog) -> Report:
-    return build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 5.0))
+    return build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 8.0, 4.9))
 
 
 def test_frames_are_accounted_for(report: Report) -> None:
@@ -187,7 +187,7 @@ def test_a_message_recorded_twice_counts_once(log: SessionLog, report: Report, w
     log.add(10, FrameManifest(int(drive.timestamp_ns[10]), "a drive", "000010", (), FRAMES))
     log.add(10, _tracked(10, drive))
     log.add(INITIALIZED, _map_update(0))
-    again = build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 5.0))
+    again = build_report(log, log.live_trajectory(), USAGE, RunOutcome("s", "", 8.0, 4.9))
     assert again == report
 
 
