@@ -16,6 +16,8 @@ from services.runtime.log import get_logger
 from services.runtime.metrics import Metrics
 
 NAME = "recorder"
+_LAST_SEQUENCE = 2**32 - 1
+"""MCAP holds a sequence number in 32 bits, a time without a sign"""
 RECORDED_TOPICS = tuple(topic for topic in topics.TOPICS if topic.recorded)
 
 
@@ -55,6 +57,9 @@ class Recorder:
             return False
         if message.envelope.session != self._session:
             self.metrics_of_frames.count("other_session")
+        elif not (0 <= message.envelope.sequence <= _LAST_SEQUENCE and message.envelope.timestamp_ns >= 0):
+            self.metrics_of_frames.count("messages_unreadable")
+            self._log.warning_limited("message_unreadable", envelope=message.envelope)
         elif message.topic is not topics.ANSWER or message.suffix != NAME:
             try:
                 for frame in self._ledger.add(message):

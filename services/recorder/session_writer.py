@@ -58,6 +58,7 @@ class SessionWriter:
         self.recovered: list[tuple[str, int]] = []
         """key and sequence of the last messages that were there already, oldest first; empty for a new file"""
         self.finished = False
+        self._full: ResourceError | None = None
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._reserve = DiskReserve(path, self._options.reserve_bytes)
@@ -89,6 +90,8 @@ class SessionWriter:
         """
         if not messages:
             return
+        if self._full is not None:
+            raise self._full
         if self.finished:
             self._reopen()
         head, ids = self._describe({message.key for message in messages})
@@ -208,9 +211,10 @@ class SessionWriter:
     def _stop(self, error: OSError) -> NoReturn:
         self._cut()
         self.finish()
-        raise ResourceError(
+        self._full = ResourceError(
             f"{self.path}: {error.strerror}; the recording ends here, whole and readable: {self.message_count} messages"
-        ) from error
+        )
+        raise self._full from error
 
 
 def _all_indexed(stream: BinaryIO, chunk: ChunkIndex) -> bool:

@@ -92,10 +92,11 @@ def test_bytes_that_are_no_manifest_and_other_sessions_do_no_harm(config: Config
     rig = Rig(config)
     bad = Message(topics.MANIFEST, Envelope(SESSION, 0, 1), b"\xff\xff\xff")
     other = Message(topics.MANIFEST, Envelope("another", 0, 1), payload(topics.MANIFEST, 0))
-    assert rig.send([bad, other]) == []
+    impossible = [Message(topics.IMAGE, Envelope(SESSION, *numbers), b"") for numbers in [(-1, 5), (0, -5), (2**32, 5)]]
+    assert rig.send([bad, other, *impossible]) == []
     assert rig.send(frame_messages(0)) == [0]
     metrics = rig.recorder.metrics()
-    assert (metrics["messages_unreadable"], metrics["other_session"], metrics["frames"]) == (1.0, 1.0, 1.0)
+    assert (metrics["messages_unreadable"], metrics["other_session"], metrics["frames"]) == (4.0, 1.0, 1.0)
     rig.recorder.close()
 
 

@@ -205,7 +205,7 @@ def test_a_real_sequence_comes_back_frame_by_frame(tmp_path: Path, shared_data: 
         assert after is not None
         sent, sent_again = frame_records(before, given), frame_records(after, again)
         assert [topic for topic, _ in sent] == [topic for topic, _ in sent_again]
-        # The manifest names its source, and a rotation of 7 digits is normalised on the way; all else is the same bytes.
+        # The manifest names its source, and a rotation of 7 digits is normalised; all else is the same bytes.
         for (topic, record), (_, record_again) in zip(sent, sent_again, strict=True):
             if topic not in (topics.MANIFEST, topics.TRUE_POSE):
                 assert encode(topic, record) == encode(topic, record_again)

@@ -159,6 +159,8 @@ def test_a_full_disk_ends_it_with_one_line_and_a_whole_file(tmp_path: Path, monk
     monkeypatch.setattr(os, "pwrite", full_after_half)
     with pytest.raises(ResourceError, match="No space left on device; the recording ends here, whole and readable"):
         writer.append(recorded_frame(1))
+    with pytest.raises(ResourceError, match="the recording ends here"):
+        writer.append(recorded_frame(2))
     writer.close()
     assert read(path) == expected(range(1))
     assert not reserve.exists()
