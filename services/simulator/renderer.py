@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.camera import PinholeCamera
+from services.simulator.contact import ContactShade, Footprint
 from services.simulator.raycast import RayScene
 from services.simulator.shading import Shader, ViewTriangles
 from services.simulator.textures import TextureAtlas
@@ -60,13 +62,16 @@ class Renderer:
         self._shader = Shader(atlas, atlas.index["clouds"])
         self._columns, self._rows = camera.pixel_grid()
         self._x, self._y = camera.normalised(self._columns, self._rows)
+        self._contact = ContactShade(camera)
 
     def cast(self, world_from_camera: Floats, moving: Surfaces | None) -> Hits:
         """Nearest surfaces of every pixel."""
         return self._nearest(world_from_camera, moving, self._columns, self._rows)
 
-    def render(self, world_from_camera: Floats, moving: Surfaces | None) -> RenderedView:
-        """Image and surfaces seen from a pose; the image is the same whatever was rendered before."""
+    def render(
+        self, world_from_camera: Floats, moving: Surfaces | None, footprints: Sequence[Footprint]
+    ) -> RenderedView:
+        """Image and surfaces seen from a pose; the ground is darker round `footprints`."""
         hits = self.cast(world_from_camera, moving)
         tables = [self._static.table] + ([moving.table] if moving else [])
         edge = np.nonzero(_edges(_per_triangle([table.part for table in tables], renumber=True), hits.triangle))
@@ -77,8 +82,10 @@ class Renderer:
             beside = self._shaded(view, row_of, *again).reshape(-1, 3)[: len(edge[0]) * len(_EDGE_OFFSETS_PX)]
             total = colour[edge] + beside.reshape(len(_EDGE_OFFSETS_PX), -1, 3).sum(axis=0)
             colour[edge] = total / np.float32(len(_EDGE_OFFSETS_PX) + 1)
-        image = np.clip(colour + np.float32(0.5), 0.0, 255.0).astype(np.uint8)
         instance = np.append(_per_triangle([table.instance for table in tables]), 0)[hits.triangle]
+        on_ground = (instance == 0) & (hits.triangle >= 0)
+        self._contact.darken(colour, hits.depth_m, on_ground, world_from_camera, footprints)
+        image = np.clip(colour + np.float32(0.5), 0.0, 255.0).astype(np.uint8)
         return RenderedView(image, hits, instance)
 
     def _look_again(

@@ -97,7 +97,7 @@ class ViewTriangles:
     def sky_position(self, x: Floats32, y: Floats32) -> tuple[Floats32, Floats32]:
         """Position in the sky's texture of image directions: azimuth, and elevation from the horizon up."""
         direction = self._axes @ np.stack([x, y, np.ones_like(x)])
-        azimuth = np.arctan2(direction[1], direction[0]) * np.float32(2.0 / np.pi)
+        azimuth = np.arctan2(direction[1], direction[0]) * np.float32(1.0 / np.pi)
         rise = np.arctan2(direction[2], np.hypot(direction[0], direction[1])) * np.float32(2.0 / np.pi)
         return azimuth, np.clip(1.0 - 2.2 * rise, 0.01, 0.99).astype(np.float32)
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from services.runtime.errors import InputError
 from services.simulator.actors import Actor, ActorState
 from services.simulator.camera import EgoTrajectory, PinholeCamera
+from services.simulator.contact import Footprint
 from services.simulator.flow import View, flow_between
 from services.simulator.frame import SimulatedFlow, SimulatedFrame, SimulatedInstance
 from services.simulator.library import paint_library
@@ -21,7 +22,7 @@ from services.simulator.triangles import TriangleTable, joined, table_of
 from services.simulator.world import build_world
 
 _VIEW_RANGE_M = 180.0
-"""Actors farther away than this are left out: under five pixels high with the widest lens in use."""
+"""Moving actors farther away than this are left out: three pixels of the default lens."""
 
 
 class Street:
@@ -42,7 +43,8 @@ class Street:
         self.actors: list[Actor] = TrafficPlanner(self.options, self.road, self.ego, atlas.index).plan()
         mesh = build_world(self.road, self.options.seed, atlas.index)
         world = table_of(mesh, mesh.vertices, np.zeros(len(mesh.triangles), np.int32))
-        parked = [_table_at(actor, actor.at(0.0)) for actor in self.actors if actor.always_still]
+        self._still = {actor.instance_id: actor.at(0.0) for actor in self.actors if actor.always_still}
+        parked = [_table_at(actor, self._still[actor.instance_id]) for actor in self.actors if actor.always_still]
         self._static = Surfaces(joined([world, *parked]), self.options.threads)
         self._renderer = Renderer(self.camera, self._static, atlas)
 
@@ -67,10 +69,12 @@ class Street:
         """
         t_s = self._time_s(index)
         pose = self.ego.world_from_camera(t_s)
-        view = self._renderer.render(pose, self._moving_surfaces(pose, t_s))
+        near = self._actors_near(pose, t_s)
+        footprints = [Footprint(state.world_from_object, *actor.size_m[:2]) for actor, state in near]
+        view = self._renderer.render(pose, self._moving_surfaces(near), footprints)
         depth = np.where(np.isfinite(view.hits.depth_m), view.hits.depth_m, np.float32(0.0))
         labels = view.instance.astype(np.uint16)
-        instances = self._visible(labels, t_s)
+        instances = _visible(labels, near)
         return SimulatedFrame(index, self.timestamp_ns(index), view.image, depth, labels, instances, pose)
 
     def flow(self, index: int) -> SimulatedFlow:
@@ -81,15 +85,16 @@ class Street:
         """
         t_s, next_t_s = self._time_s(index), self._time_s(index + 1)
         pose, next_pose = self.ego.world_from_camera(t_s), self.ego.world_from_camera(next_t_s)
-        now = self._renderer.cast(pose, self._moving_surfaces(pose, t_s))
-        then = self._renderer.cast(next_pose, self._moving_surfaces(next_pose, next_t_s))
+        now = self._renderer.cast(pose, self._moving_surfaces(self._actors_near(pose, t_s)))
+        then = self._renderer.cast(next_pose, self._moving_surfaces(self._actors_near(next_pose, next_t_s)))
         corners_now, corners_then = (
             np.concatenate(
                 [
                     self._static.table.corner,
                     *(
                         actor.vertices_in_world(actor.at(t))[actor.mesh.triangles]
-                        for actor, _ in self._moving_actors_near(pose, t_s)
+                        for actor, _ in self._actors_near(pose, t_s)
+                        if not actor.always_still
                     ),
                 ]
             )
@@ -105,49 +110,51 @@ class Street:
             raise InputError(f"simulator frame {index}: expected 0 to {self.frame_count - 1}")
         return index
 
-    def _moving_actors_near(self, world_from_camera: NDArray[np.float64], t_s: float) -> list[tuple[Actor, ActorState]]:
-        """Those that may be in sight and are not part of the static scene."""
+    def _actors_near(self, world_from_camera: NDArray[np.float64], t_s: float) -> list[tuple[Actor, ActorState]]:
+        """Those that may be in sight, in order of their ids."""
         near = []
         for actor in self.actors:
-            if not actor.always_still:
-                state = actor.at(t_s)
-                away = state.centre_m[:2] - world_from_camera[:2, 3]
-                ahead = float(away @ world_from_camera[:2, 2])
-                if state.present and ahead > -actor.size_m[0] and float(np.hypot(*away)) < _VIEW_RANGE_M:
-                    near.append((actor, state))
+            if actor.always_still:
+                near.append((actor, self._still[actor.instance_id]))
+                continue
+            state = actor.at(t_s)
+            away = state.centre_m[:2] - world_from_camera[:2, 3]
+            ahead = float(away @ world_from_camera[:2, 2])
+            if state.present and ahead > -actor.size_m[0] and float(np.hypot(*away)) < _VIEW_RANGE_M:
+                near.append((actor, state))
         return near
 
-    def _moving_surfaces(self, world_from_camera: NDArray[np.float64], t_s: float) -> Surfaces | None:
-        near = self._moving_actors_near(world_from_camera, t_s)
-        if not near:
-            return None
-        return Surfaces(joined([_table_at(actor, state) for actor, state in near]), self.options.threads)
+    def _moving_surfaces(self, near: list[tuple[Actor, ActorState]]) -> Surfaces | None:
+        """Surfaces of those that are not part of the static scene."""
+        tables = [_table_at(actor, state) for actor, state in near if not actor.always_still]
+        return Surfaces(joined(tables), self.options.threads) if tables else None
 
-    def _visible(self, labels: NDArray[np.uint16], t_s: float) -> list[SimulatedInstance]:
-        """Everybody with at least one pixel, in order of their ids."""
-        rows, columns = np.nonzero(labels)
-        ids = labels[rows, columns]
-        found = []
-        for instance_id in np.unique(ids):
-            actor = self.actors[int(instance_id) - 1]
-            mine = ids == instance_id
-            x, y = int(columns[mine].min()), int(rows[mine].min())
-            box = (x, y, int(columns[mine].max()) - x + 1, int(rows[mine].max()) - y + 1)
-            state = actor.at(t_s)
-            found.append(
-                SimulatedInstance(
-                    actor.instance_id,
-                    actor.category,
-                    state.moving,
-                    state.velocity_m_s,
-                    state.centre_m,
-                    state.heading_rad,
-                    actor.size_m,
-                    box,
-                    int(mine.sum()),
-                )
+
+def _visible(labels: NDArray[np.uint16], near: list[tuple[Actor, ActorState]]) -> list[SimulatedInstance]:
+    """Everybody with at least one pixel, in order of their ids."""
+    rows, columns = np.nonzero(labels)
+    ids = labels[rows, columns]
+    found = []
+    for actor, state in near:
+        mine = np.flatnonzero(ids == actor.instance_id)
+        if not len(mine):
+            continue
+        x, y = int(columns[mine].min()), int(rows[mine[0]])
+        box = (x, y, int(columns[mine].max()) - x + 1, int(rows[mine[-1]]) - y + 1)
+        found.append(
+            SimulatedInstance(
+                actor.instance_id,
+                actor.category,
+                state.moving,
+                state.velocity_m_s,
+                state.centre_m,
+                state.heading_rad,
+                actor.size_m,
+                box,
+                len(mine),
             )
-        return found
+        )
+    return found
 
 
 def _table_at(actor: Actor, state: ActorState) -> TriangleTable:

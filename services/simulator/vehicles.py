@@ -124,6 +124,7 @@ def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int]) -> Mesh:
     right = left * [1.0, -1.0, 1.0]
     pieces = [_side(style, left, 1.0, paint, texture), _side(style, right, -1.0, paint, texture)]
     last = len(outline) - 2
+    rear_x, front_x = outline[:, 0].min(), outline[:, 0].max()
     for k in range(len(outline) - 1):
         corners = np.stack([left[k + 1], right[k + 1], right[k], left[k]])
         if k in (style.rear_glass, style.windscreen):
@@ -141,12 +142,16 @@ def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int]) -> Mesh:
             hub = np.array([x, y * (style.half_width_m - 0.2), _WHEEL_RADIUS_M])
             rim = np.array([x, y * (style.half_width_m + 0.02), _WHEEL_RADIUS_M])
             pieces.append(tube(hub, rim, (_WHEEL_RADIUS_M, _WHEEL_RADIUS_M), texture["wheel"], 12, repeat=(6.0, 0.05)))
-    for end, z in ((style.outline[0][0] - 0.06, 0.66), (style.outline[-1][0] + 0.05, 0.42)):
+    for end, z, lamp_z in ((rear_x - 0.03, 0.66, 0.84), (front_x + 0.03, 0.42, 0.68)):
         across = np.array([0.27, -0.27, -0.27, 0.27])
         plate = np.column_stack(
             [np.full(4, end), across if end < 0 else -across, z + np.array([0.06, 0.06, -0.06, -0.06])]
         )
         pieces.append(quads(plate, _UNIT, texture["plate"]))
+        # Lamps keep their colours whatever the paint.
+        for side in (-1.0, 1.0):
+            lamp = plate * [1.0, 0.8, 1.0] + [0.0, side * (style.half_width_m - 0.24), lamp_z - z]
+            pieces.append(quads(lamp, _UNIT, texture["headlamp" if end > 0 else "tail_lamp"]))
     mirror_x = outline[style.windscreen + 1, 0] - 0.18
     for y in (-1.0, 1.0):
         centre = (mirror_x, y * (style.half_width_m + 0.1), outline[style.windscreen + 1, 1] + 0.02)
@@ -235,6 +240,8 @@ def paint_parts(rng: np.random.Generator) -> dict[str, Image]:
         "car_front": _front(rng),
         "car_rear": _rear(rng),
         "plate": _plate(rng),
+        "headlamp": _lamp(rng, (232.0, 236.0, 238.0)),
+        "tail_lamp": _lamp(rng, (40.0, 36.0, 200.0)),
         "wheel": _wheel(rng),
         "rubber": to_image(coloured(noise(rng, 32, 32, [(8, 6)]), (30.0, 30.0, 30.0))),
     }
@@ -247,8 +254,6 @@ def _front(rng: np.random.Generator) -> Image:
         cv2.line(canvas, (78, y), (178, y), (120.0, 120.0, 120.0), 2)
     cv2.circle(canvas, (128, 40), 9, (210.0, 210.0, 210.0), -1)
     for x in (36, 220):
-        cv2.ellipse(canvas, (x, 38), (28, 15), 0, 0, 360, (40.0, 40.0, 40.0), -1)
-        cv2.ellipse(canvas, (x, 38), (22, 10), 0, 0, 360, (244.0, 246.0, 246.0), -1)
         cv2.circle(canvas, (x, 92), 9, (226.0, 228.0, 228.0), -1)
     cv2.rectangle(canvas, (60, 78), (196, 104), (34.0, 34.0, 34.0), -1)
     cv2.line(canvas, (0, 68), (255, 68), (90.0, 90.0, 90.0), 3)
@@ -257,15 +262,18 @@ def _front(rng: np.random.Generator) -> Image:
 
 def _rear(rng: np.random.Generator) -> Image:
     canvas = _sheet(rng, 128, 256)
-    for x in (28, 228):
-        cv2.rectangle(canvas, (x - 26, 18), (x + 26, 50), (38.0, 34.0, 190.0), -1)
-        cv2.rectangle(canvas, (x - 26, 36), (x + 26, 42), (220.0, 224.0, 230.0), -1)
-        cv2.rectangle(canvas, (x - 26, 18), (x + 26, 50), (20.0, 20.0, 30.0), 2)
     cv2.circle(canvas, (128, 24), 8, (210.0, 210.0, 210.0), -1)
     cv2.rectangle(canvas, (84, 36), (172, 62), (92.0, 92.0, 92.0), 2)
     cv2.line(canvas, (0, 72), (255, 72), (84.0, 84.0, 84.0), 3)
     cv2.rectangle(canvas, (20, 100), (236, 127), (40.0, 40.0, 40.0), -1)
     return to_image(canvas)
+
+
+def _lamp(rng: np.random.Generator, colour: Colour) -> Image:
+    lamp = coloured(noise(rng, 32, 64, [(6, 22), (16, 14)]), colour)
+    cv2.circle(lamp, (20, 16), 9, (250.0, 250.0, 250.0), 2)
+    cv2.rectangle(lamp, (0, 0), (63, 31), (24.0, 24.0, 24.0), 3)
+    return to_image(lamp)
 
 
 def _plate(rng: np.random.Generator) -> Image:
