@@ -50,7 +50,7 @@ class DynamicDensity:
         parts: list[_MovingRows] = []
         for row in np.flatnonzero(inside).tolist():
             if keyframes.counts[row, _MOVING]:
-                parts.append(_moving(view, row, slice(None)))
+                parts.append(_moving(view, row, None))
         for row, within in self._members(view, crossing, position, radius):
             observed += int(np.count_nonzero(within))
             if keyframes.counts[row, _MOVING]:
@@ -94,11 +94,9 @@ class DynamicDensity:
         return list(zip(rows.tolist(), np.split(within, np.cumsum(sizes)[:-1]), strict=True))
 
 
-def _moving(view: MapView, row: int, within: npt.NDArray[np.bool_] | slice) -> _MovingRows:
+def _moving(view: MapView, row: int, within: npt.NDArray[np.bool_] | None) -> _MovingRows:
     cluster = view.clusters[row]
-    moving = cluster.state == _MOVING
-    if not isinstance(within, slice):
-        moving &= within
+    moving = cluster.moving if within is None else cluster.moving[within[cluster.moving]]
     return _MovingRows(cluster.object_id[moving], cluster.last_seen_ns[moving])
 
 

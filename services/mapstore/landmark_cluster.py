@@ -2,6 +2,7 @@
 """The landmarks and camera positions of one keyframe: what a map correction moves as one piece."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,7 @@ class LandmarkCluster:
     def __len__(self) -> int:
         return len(self.landmark_id)
 
+    @cached_property
     def moving(self) -> npt.NDArray[np.intp]:
         """The rows of moving landmarks."""
         return np.flatnonzero(self.state == MotionState.MOVING)

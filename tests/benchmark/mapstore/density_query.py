@@ -60,7 +60,7 @@ def measure(points: int) -> None:
         for _ in range(QUERIES):
             first = int(rng.integers(0, keyframes - CORRECTED_KEYFRAMES))
             moved = with_keyframes(MapUpdate(0), *range(first, first + CORRECTED_KEYFRAMES))
-            moved = replace(moved, keyframe_pose=moved.keyframe_pose + [[0, 1e-3, 0, 0, 0, 0, 0, 0]])
+            moved = replace(moved, keyframe_pose=np.add(moved.keyframe_pose, [0, 1e-3, 0, 0, 0, 0, 0, 0]))
             started = time.perf_counter()
             state.apply(moved)
             view = state.view()

@@ -12,6 +12,7 @@ from schemas.records import Density, DensityLevel, MapUpdate
 from services.mapstore import map_file
 from services.mapstore.density import DynamicDensity
 from services.mapstore.export import load_view
+from services.mapstore.landmark_cluster import LandmarkCluster
 from services.mapstore.map_state import MapState
 from services.mapstore.map_view import FrameColumns, MapView
 from services.mapstore.store import MapStore
@@ -37,7 +38,7 @@ def assert_same_map(left: MapView, right: MapView) -> None:
     ]
     assert clusters[0].keys() == clusters[1].keys()
     for number, cluster in clusters[0].items():
-        for name in vars(cluster):
+        for name in (field.name for field in fields(LandmarkCluster)):
             np.testing.assert_array_equal(getattr(cluster, name), getattr(clusters[1][number], name))
     orders = [np.argsort(view.keyframes.id) for view in (left, right)]
     np.testing.assert_array_equal(left.keyframes.pose[orders[0]], right.keyframes.pose[orders[1]])
