@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The slam process: `python -m services.slam.service --config FILE`."""
+
+from typing import ClassVar
+
+import numpy as np
+
+from schemas import topics
+from schemas.codec.rigid import matrix_from_pose, pose_from_matrix
+from schemas.records import CameraCalibration, MapUpdate, MaskSource, Objects, PoseInMap, TrackedFrame, TrackingState
+from schemas.topics import Topic
+from services.runtime.config import Config
+from services.runtime.errors import InputError
+from services.runtime.host import run_service
+from services.runtime.log import get_logger
+from services.runtime.outbox import State
+from services.runtime.service import Bundle, FrameService, Outgoing
+from services.slam.engine_adapter import EngineSettings, SlamEngine
+
+NAME = "slam"
+
+
+class SlamService(FrameService):
+    """Drives the engine: a pose for every frame, and what changed of the map.
+
+    The engine's own state is not kept on disk yet: after a kill, tracking begins a new map in the same session, and
+    nothing already sent is lost.
+    """
+
+    name: ClassVar[str] = NAME
+    awaits: ClassVar[tuple[Topic, ...]] = (topics.IMAGE, topics.CALIBRATION, topics.DEPTH, topics.OBJECTS)
+    deferrable: ClassVar[tuple[Topic, ...]] = (topics.OBJECTS,)
+    answers: ClassVar[bool] = True
+
+    def __init__(self, config: Config) -> None:
+        self._options = config.slam
+        self._base_from_camera = np.array(config.mapstore.base_from_camera)
+        self._log = get_logger(NAME)
+        self._engine: SlamEngine | None = None
+        self._calibration: CameraCalibration | None = None
+        self._map_id = 0
+        self._objects: Objects | None = None
+        self._state = TrackingState.INITIALIZING
+        self._counts = {"keyframes_inserted": 0.0, "frames_lost": 0.0, "moving_unplaced": 0.0}
+
+    def process(self, bundle: Bundle) -> list[Outgoing]:
+        """Track one frame."""
+        engine = self._engine_for(bundle[topics.CALIBRATION])
+        try:
+            engine.begin_frame(bundle[topics.IMAGE])
+            objects, masks = self._masks(bundle.get(topics.OBJECTS))
+            depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
+            frame = engine.finish_frame(objects, masks, depth)
+        except ValueError as error:
+            raise InputError(f"frame {bundle.envelope.sequence}: {error}") from error
+        self._note(frame)
+        update = engine.take_map_update(bundle.timestamp_ns)
+        outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
+        if frame.map_from_camera is not None:
+            outgoing.append(Outgoing(topics.POSE, self._base_pose(frame)))
+        return outgoing
+
+    def finish(self, bundle: Bundle) -> list[Outgoing]:
+        """The input is over: merge what is still being optimised, and send it."""
+        if self._engine is None:
+            return [Outgoing(topics.MAP_UPDATE, MapUpdate(bundle.timestamp_ns, self._map_id))]
+        self._engine.flush()
+        return [Outgoing(topics.MAP_UPDATE, self._engine.take_map_update(bundle.timestamp_ns))]
+
+    def snapshot(self) -> State:
+        """The map's number, so that a successor's ids are new ones."""
+        return {"map_id": np.array(self._map_id, dtype=np.int64)}
+
+    def restore(self, state: State) -> None:
+        """Begin the next map."""
+        self._map_id = int(state["map_id"]) + 1
+        self._log.warning("new_map_after_restart", map_id=self._map_id)
+
+    def metrics(self) -> dict[str, float]:
+        """What happened so far."""
+        return dict(self._counts)
+
+    def _engine_for(self, calibration: CameraCalibration) -> SlamEngine:
+        known = self._calibration
+        if self._engine is not None and known is not None:
+            same = (
+                np.array_equal(known.intrinsics, calibration.intrinsics) and known.distortion == calibration.distortion
+            )
+            if not same or (known.width, known.height) != (calibration.width, calibration.height):
+                raise InputError("the camera's calibration changed within a session, expected one camera a session")
+            return self._engine
+        options = self._options
+        settings = EngineSettings(
+            stage=options.stage,
+            features=options.features,
+            pyramid_levels=options.pyramid_levels,
+            pyramid_factor=options.pyramid_factor,
+            seed=options.seed,
+            merge_delay_frames=options.merge_delay_frames,
+            map_from_first_camera=self._base_from_camera,
+            map_id=self._map_id,
+        )
+        try:
+            self._engine = SlamEngine(calibration, settings)
+        except ValueError as error:
+            raise InputError(str(error)) from error
+        self._calibration = calibration
+        return self._engine
+
+    def _masks(self, objects: Objects | None) -> tuple[Objects | None, MaskSource]:
+        """This frame's objects, else the newest there are, and which of the two."""
+        if objects is not None:
+            self._objects = objects
+            return objects, MaskSource.FRESH if objects.masks_age_frames == 0 else MaskSource.CARRIED
+        return self._objects, MaskSource.NO_MASKS if self._objects is None else MaskSource.CARRIED
+
+    def _base_pose(self, frame: TrackedFrame) -> PoseInMap:
+        assert frame.map_from_camera is not None
+        base_from_camera = matrix_from_pose(self._base_from_camera)
+        if not frame.metric_scale:
+            base_from_camera[:3, 3] = 0.0  # metres mean nothing in a map without metres
+        map_from_base = matrix_from_pose(frame.map_from_camera) @ np.linalg.inv(base_from_camera)
+        return PoseInMap(frame.timestamp_ns, pose_from_matrix(map_from_base))
+
+    def _note(self, frame: TrackedFrame) -> None:
+        if frame.state is not self._state:
+            self._log.info("tracking_state", state=frame.state.name.lower(), reason=frame.reason or "-")
+            self._state = frame.state
+        self._counts["keyframes_inserted"] += frame.keyframe_inserted
+        self._counts["frames_lost"] += frame.state is TrackingState.LOST
+        self._counts["moving_unplaced"] += frame.moving_unplaced
+
+
+def _same_camera(one: CameraCalibration, other: CameraCalibration) -> bool:
+    return (
+        (one.width, one.height, one.distortion) == (other.width, other.height, other.distortion)
+    ) and np.array_equal(one.intrinsics, other.intrinsics)
+
+
+if __name__ == "__main__":
+    run_service(SlamService, NAME)
