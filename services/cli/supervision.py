@@ -10,7 +10,6 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 
 from services.cli.leftovers import end, processes_of
@@ -24,10 +23,7 @@ from services.runtime.zenoh_bus import ZenohBus
 
 READY_WITHIN_S = 60.0
 STOP_PATIENCE_S = 5.0
-_CRASHES = 5
-_CRASH_SPAN_S = 60.0
-"""a service that dies so often in that time is not going to live"""
-_SPAWNED = re.compile(r"^(\S+ \S+),\d+ INFO spawned: '([^']+)' with pid \d+$", re.MULTILINE)
+_SPAWNED = re.compile(r" INFO spawned: '([^']+)' with pid \d+$", re.MULTILINE)
 
 
 class ServiceFailedError(KinemapError):
@@ -120,7 +116,7 @@ class Supervision:
     def status(self) -> list[ServiceStatus]:
         """Every service, in the order of the table."""
         infos = {info.name: info for info in self._client.processes() or []}
-        spawns = Counter(name for name, _ in self._spawns())
+        spawns = self._spawns()
         return [self._status_of(name, infos.get(name), spawns[name]) for name in (row.name for row in self._processes)]
 
     def _status_of(self, name: str, info: ProcessInfo | None, spawns: int) -> ServiceStatus:
@@ -136,26 +132,17 @@ class Supervision:
         if processes is None:
             return ServiceFailedError(f"supervisord of {self.folder} is gone; see {self.logs / 'supervisord.log'}")
         for info in processes:
-            if info.state == "fatal" or (info.state == "exited" and info.exit_code != 0):
-                code = info.exit_code if info.state == "exited" and info.exit_code > 0 else 1
-                if info.state == "fatal" or code == InputError.exit_code:
-                    return ServiceFailedError(f"{info.name}: {self._last_words(info.name)}", code)
-        return self._crash_loop()
-
-    def _crash_loop(self) -> KinemapError | None:
-        now = datetime.now()
-        recent = Counter(name for name, at in self._spawns() if (now - at).total_seconds() < _CRASH_SPAN_S)
-        for name, count in recent.items():
-            if count > _CRASHES:
-                return ServiceFailedError(
-                    f"{name} died {count - 1} times in {_CRASH_SPAN_S:.0f} s, at last with: {self._last_words(name)}"
-                )
+            gave_up = info.state == "exited" and info.exit_code == InputError.exit_code
+            if gave_up or info.state == "fatal":
+                code = InputError.exit_code if gave_up else ServiceFailedError.exit_code
+                return ServiceFailedError(f"{info.name}: {self._last_words(info.name)}", code)
         return None
 
     def _start_supervisord(self) -> None:
         self.logs.mkdir(parents=True, exist_ok=True)
         self._socket.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        for stale in (*self.folder.glob("*.error"), self.logs / "supervisord.log"):
+        stale_files = (*self.folder.glob("*.error"), *self.logs.glob("*.starts"), self.logs / "supervisord.log")
+        for stale in stale_files:
             stale.unlink(missing_ok=True)
         self._supervisord_file.write_text(supervisord_config(self._processes), encoding="utf-8")
         # The run's file is the whole truth: KINEMAP_<SECTION>__<FIELD> went into it and must not override it again.
@@ -184,13 +171,10 @@ class Supervision:
     def _process_ended(self) -> bool:
         return self._process is not None and self._process.poll() is not None
 
-    def _spawns(self) -> list[tuple[str, datetime]]:
-        """Which service was spawned when, by supervisord's log of this run."""
-        try:
-            text = (self.logs / "supervisord.log").read_text(encoding="utf-8", errors="replace")
-        except FileNotFoundError:
-            return []
-        return [(name, datetime.fromisoformat(at)) for at, name in _SPAWNED.findall(text)]
+    def _spawns(self) -> Counter[str]:
+        """How often each service was spawned, by supervisord's log of this run."""
+        log = self.logs / "supervisord.log"
+        return Counter(_SPAWNED.findall(log.read_text(encoding="utf-8", errors="replace")) if log.exists() else ())
 
     def _error_of(self, name: str) -> str:
         """The line that a service left when it gave up; empty where it left none."""

@@ -43,7 +43,7 @@ serverurl=unix://%(ENV_KINEMAP_SOCKET)s
 _PROGRAM = """\
 
 [program:{name}]
-command=%(ENV_KINEMAP_PYTHON)s -m {module} --config %(ENV_KINEMAP_RUN_CONFIG)s
+command=%(ENV_KINEMAP_PYTHON)s -m services.cli.restart_limit {name} {module} --config %(ENV_KINEMAP_RUN_CONFIG)s
 priority={priority}
 environment={environment}
 autostart=true

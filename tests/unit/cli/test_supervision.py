@@ -14,6 +14,7 @@ import pytest
 
 from services.cli.leftovers import processes_of
 from services.cli.ports import any_free_port
+from services.cli.restart_limit import exceeded
 from services.cli.run_folder import write_config
 from services.cli.supervision import ServiceFailedError, Supervision
 from services.cli.supervisord_client import socket_of
@@ -109,9 +110,18 @@ def test_bad_input_is_one_line_and_not_tried_again(config: Config, supervision: 
 
 def test_one_that_always_crashes_ends_the_waiting(config: Config, supervision: Supervision) -> None:
     (config.run.out / "behaviour").write_text("crash")
-    with pytest.raises(ServiceFailedError, match=r"small died 5 times .* RuntimeError: a fault nobody expected"):
+    with pytest.raises(
+        ServiceFailedError, match=r"small: died 5 times in 60 s.* RuntimeError: a fault nobody expected"
+    ):
         supervision.up()
     assert left(config) == []
+    assert supervision.status()[1].restarts == 5
+
+
+def test_five_deaths_long_ago_do_not_count(tmp_path: Path) -> None:
+    starts = tmp_path / "starts"
+    assert [exceeded(starts, now_s) for now_s in (0, 20, 40, 60, 80, 100, 120)] == [False] * 7
+    assert [exceeded(starts, now_s) for now_s in (121, 122, 123, 124)] == [False, False, True, True]
 
 
 def test_one_that_is_never_ready_is_named(config: Config) -> None:
