@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ engine in the records of the pipeline: numpy arrays in, TrackedFrame and MapUpdate out."""
+"""The C++ engine in terms of the project's records: images and objects in, tracked frames and map updates out."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Literal
 
 import cv2
@@ -10,101 +12,151 @@ import numpy.typing as npt
 
 from schemas.categories import category_id
 from schemas.codec.rigid import matrix_from_pose, pose_from_matrix
-from schemas.records import (
-    CameraCalibration,
-    DepthImage,
-    Image,
-    MapUpdate,
-    MaskSource,
-    Objects,
-    TrackedFrame,
-    TrackingState,
-)
+from schemas.records.camera import CameraCalibration, DepthImage, Image
+from schemas.records.objects import Objects
+from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
+from services.runtime.errors import InputError
 from services.slam import _engine
 
-Array = npt.NDArray[np.float64]
+Stage = Literal["base", "dynamic", "moving"]
+
+_OPTICAL_IN_REP103 = (0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 
 
 @dataclass(frozen=True)
 class EngineSettings:
-    """What a user may choose of the engine; see services/runtime/config/slam.py."""
+    """What a run may choose; `_engine.pyi` says what each is."""
 
-    stage: Literal["base", "dynamic", "moving"]
-    features: int
-    pyramid_levels: int
-    pyramid_factor: float
-    seed: int
-    merge_delay_frames: int
-    map_from_first_camera: Array
-    """(7,) tx ty tz qx qy qz qw"""
+    stage: Stage = "moving"
+    features: int = 2000
+    pyramid_levels: int = 8
+    pyramid_factor: float = 1.2
+    mask_border_px: int = 3
+    seed: int = 0
+    merge_delay_frames: int = 2
+    local_bundle_keyframes: int = 15
+    opencv_threads: int = 1
     map_id: int = 0
+    map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
+    """(7,) tx ty tz qx qy qz qw; a level camera in a map with x forward, y left, z up (REP-103) unless given"""
 
 
 class SlamEngine:
-    """One map being made from one camera."""
+    """One camera's monocular SLAM. Not for two threads at once."""
 
-    def __init__(self, calibration: CameraCalibration, settings: EngineSettings) -> None:
-        """Raises ValueError for a calibration or an option that the engine cannot use, naming it."""
-        k = calibration.intrinsics
-        camera = _engine.CameraModel(
-            calibration.width, calibration.height, k[0, 0], k[1, 1], k[0, 2], k[1, 2], list(calibration.distortion)
-        )
-        options = _engine.EngineOptions()
-        options.stage = getattr(_engine.Stage, settings.stage)
-        options.features = settings.features
-        options.pyramid_levels = settings.pyramid_levels
-        options.pyramid_factor = settings.pyramid_factor
-        options.seed = settings.seed
-        options.merge_delay_frames = settings.merge_delay_frames
-        options.map_id = settings.map_id
-        options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)
-        self._stage = settings.stage
-        self._map_id = settings.map_id
+    def __init__(self, calibration: CameraCalibration, settings: EngineSettings | None = None) -> None:
+        """InputError names the number of the calibration or the setting that cannot be used."""
+        self._settings = settings or EngineSettings()
         self._metric_scale = False
-        self._engine = _engine.Engine(camera, options)
+        with _input_errors():
+            self._engine = _engine.Engine(_camera_model(calibration), _engine_options(self._settings))
 
     def begin_frame(self, image: Image) -> None:
-        """Extract the image's features; needs no masks yet. Raises ValueError for an image of another size."""
-        pixels = image.pixels
-        grey = pixels if pixels.ndim == 2 else cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
-        self._engine.begin_frame(image.timestamp_ns, np.ascontiguousarray(grey))
+        """Extract the features of an image; it needs no objects yet.
 
-    def finish_frame(self, objects: Objects | None, masks: MaskSource, depth: DepthImage | None) -> TrackedFrame:
-        """Track the frame begun. `objects` None: nothing is known of this frame's objects."""
+        A frame begun but not finished is replaced. InputError when the size is not the calibration's or the time is not
+        after the last frame's.
+        """
+        with _input_errors():
+            self._engine.begin_frame(image.timestamp_ns, _grey(image.pixels))
+
+    def finish_frame(self, objects: Objects | None, masks: MaskSource, depth: DepthImage | None = None) -> TrackedFrame:
+        """Track and map the frame begun last.
+
+        Masks that are not fresh keep every object out of tracking, whatever its state (in the stages that know
+        objects). InputError for arrays of another size; RuntimeError when no frame was begun.
+        """
         rows = () if objects is None else objects.objects
-        result = self._engine.finish_frame(
-            None if objects is None else np.ascontiguousarray(objects.track_image, dtype=np.uint32),
-            np.array([row.object_id for row in rows], dtype=np.uint32),
-            np.array([category_id(row.category) for row in rows], dtype=np.int32),
-            np.array([row.motion_state for row in rows], dtype=np.uint8),
-            masks is MaskSource.FRESH,
-            None if depth is None else np.ascontiguousarray(depth.depth_m, dtype=np.float32),
-        )
-        tracked = result.state == TrackingState.TRACKING
+        with _input_errors():
+            result = self._engine.finish_frame(
+                None if objects is None else np.ascontiguousarray(objects.track_image, np.uint32),
+                np.array([row.object_id for row in rows], np.uint32),
+                np.array([category_id(row.category) for row in rows], np.int32),
+                np.array([row.motion_state for row in rows], np.uint8),
+                masks is MaskSource.FRESH,
+                None if depth is None else np.ascontiguousarray(depth.depth_m, np.float32),
+            )
         self._metric_scale = result.metric_scale
+        return self._tracked_frame(result, masks)
+
+    def flush(self) -> None:
+        """End the input: merge the background's work and adjust the newest surroundings once more."""
+        self._engine.flush()
+
+    def take_map_update(self, timestamp_ns: int) -> MapUpdate:
+        """Everything of the map that changed since the last call, under the time of the newest frame."""
+        return MapUpdate(
+            timestamp_ns=timestamp_ns,
+            map_id=self._settings.map_id,
+            metric_scale=self._metric_scale,
+            **self._engine.take_map_update(),
+        )
+
+    def _tracked_frame(self, result: _engine.TrackingResult, masks: MaskSource) -> TrackedFrame:
+        state = TrackingState(result.state)
+        has_pose = state is TrackingState.TRACKING
+        covariance = result.covariance
         return TrackedFrame(
             timestamp_ns=result.timestamp_ns,
-            state=TrackingState(result.state),
+            state=state,
             reason=result.reason,
             map_id=result.map_id,
-            map_from_camera=pose_from_matrix(result.map_from_camera) if tracked else None,
-            covariance=result.covariance if tracked else None,
-            reference_keyframe_id=result.reference_keyframe_id if tracked else -1,
-            camera_from_reference=pose_from_matrix(result.camera_from_reference) if tracked else None,
+            map_from_camera=pose_from_matrix(result.map_from_camera) if has_pose else None,
+            covariance=covariance if has_pose and np.isfinite(covariance).all() else None,
+            reference_keyframe_id=result.reference_keyframe_id,
+            camera_from_reference=pose_from_matrix(result.camera_from_reference) if has_pose else None,
             features=result.features,
             tracked_landmarks=result.tracked_landmarks,
             keyframe_inserted=result.keyframe_inserted,
             masks=masks,
             metric_scale=result.metric_scale,
-            handling=self._stage,
+            handling=self._settings.stage,
             moving_unplaced=result.moving_unplaced,
-            stage_ms=dict(result.stage_ms),
+            stage_ms=result.stage_ms,
         )
 
-    def flush(self) -> None:
-        """The input is over: wait for what the engine still optimises, and merge it."""
-        self._engine.flush()
 
-    def take_map_update(self, timestamp_ns: int) -> MapUpdate:
-        """Everything of the map that changed since this was called last."""
-        return MapUpdate(timestamp_ns, self._map_id, self._metric_scale, **self._engine.take_map_update())
+@contextmanager
+def _input_errors() -> Iterator[None]:
+    """The engine's ValueErrors name the value and what was expected; to the user they are wrong input."""
+    try:
+        yield
+    except ValueError as error:
+        raise InputError(str(error)) from error
+
+
+def _camera_model(calibration: CameraCalibration) -> _engine.CameraModel:
+    k = calibration.intrinsics
+    return _engine.CameraModel(
+        calibration.width,
+        calibration.height,
+        float(k[0, 0]),
+        float(k[1, 1]),
+        float(k[0, 2]),
+        float(k[1, 2]),
+        list(calibration.distortion),
+    )
+
+
+def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
+    options = _engine.EngineOptions()
+    if settings.stage not in ("base", "dynamic", "moving"):
+        raise InputError(f"stage: expected base, dynamic or moving, got {settings.stage!r}")
+    options.stage = getattr(_engine.Stage, settings.stage)
+    options.features = settings.features
+    options.pyramid_levels = settings.pyramid_levels
+    options.pyramid_factor = settings.pyramid_factor
+    options.mask_border_px = settings.mask_border_px
+    options.seed = settings.seed
+    options.merge_delay_frames = settings.merge_delay_frames
+    options.local_bundle_keyframes = settings.local_bundle_keyframes
+    options.opencv_threads = settings.opencv_threads
+    options.map_id = settings.map_id
+    options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)
+    return options
+
+
+def _grey(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    if pixels.ndim == 3 and pixels.shape[2] == 3 and pixels.dtype == np.uint8:
+        return np.asarray(cv2.cvtColor(np.ascontiguousarray(pixels), cv2.COLOR_BGR2GRAY), np.uint8)
+    return np.ascontiguousarray(pixels)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run the engine alone, without a bus, on a KITTI odometry folder with instance masks, and print what it achieves.
 
-    python -m tests.benchmark.slam.engine_on_kitti SEQUENCE [--poses FILE] [--stage moving] [--frames N]
+python -m tests.benchmark.slam.engine_on_kitti SEQUENCE [--poses FILE] [--stage moving] [--frames N]
 """
 
 import argparse
@@ -56,6 +56,7 @@ class Run:
         self.landmarks: dict[int, int] = {}
         self.digest = hashlib.sha256()
         self.states: list[int] = []
+        self.tracked: list[int] = []
         self.reasons: list[str] = []
         self.wall_ms: list[float] = []
         self.stages: list[dict[str, float]] = []
@@ -71,6 +72,7 @@ class Run:
         self.stages.append(result.stage_ms)
         self.index_of_time[timestamp_ns] = index
         self.states.append(result.state)
+        self.tracked.append(result.tracked_landmarks)
         self.reasons.append(result.reason)
         if result.state == 1:
             self.relative[index] = (result.reference_keyframe_id, result.camera_from_reference)

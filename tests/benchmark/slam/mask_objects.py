@@ -22,9 +22,7 @@ class MaskObjects:
         self._previous: npt.NDArray[np.uint32] | None = None
         self._newest_id = 0
 
-    def next_frame(
-        self, index: int
-    ) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], npt.NDArray[np.int32]]:
+    def next_frame(self, index: int) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], npt.NDArray[np.int32]]:
         """Track image (height, width), ids (N,) and categories (N,) of one frame; call in the order of the frames."""
         labels = cv2.imread(str(self._folder / f"{self._names[index]}.png"), cv2.IMREAD_UNCHANGED)
         track_image = np.zeros(labels.shape, np.uint32)

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The C++ SLAM engine (services/slam/engine). `engine_adapter` wraps it; nothing else should import it."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+class Stage:
+    """Which objects' features stay out of tracking (thesis 3.2): none, all potentially dynamic ones, moving ones."""
+
+    base: ClassVar[Stage]
+    dynamic: ClassVar[Stage]
+    moving: ClassVar[Stage]
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class CameraModel:
+    """A pinhole camera; pixels; `distortion` holds 0, 4 or 5 of k1, k2, p1, p2, k3. ValueError for what is none."""
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        distortion: Sequence[float] = ...,
+    ) -> None: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+
+class EngineOptions:
+    """All options with their defaults; engine_options.h says what each does and its range."""
+
+    stage: Stage  # moving
+    features: int  # 2000, wanted a frame
+    pyramid_levels: int  # 8
+    pyramid_factor: float  # 1.2
+    fast_threshold: int  # 20 grey levels
+    fast_threshold_low: int  # 7, where nothing is found at fast_threshold
+    mask_border_px: int  # 3, around an object's outline: belongs to nobody
+    seed: int  # 0
+    merge_delay_frames: int  # 2: bundle adjustment of keyframe k is merged at frame k + 2
+    local_bundle_keyframes: int  # 15 that move
+    opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
+    map_id: int  # 0; ids start at map_id << 32
+    map_from_first_camera: npt.NDArray[np.float64]  # (4, 4), identity
+    def __init__(self) -> None: ...
+
+class TrackingResult:
+    """One frame's outcome; poses and covariance are NaN while there is no pose."""
+
+    @property
+    def timestamp_ns(self) -> int: ...
+    @property
+    def state(self) -> int:
+        """0 initializing, 1 tracking, 2 lost."""
+    @property
+    def reason(self) -> str:
+        """Why there is no pose; empty when there is one."""
+    @property
+    def map_id(self) -> int: ...
+    @property
+    def map_from_camera(self) -> npt.NDArray[np.float64]:
+        """(4, 4), map units."""
+    @property
+    def covariance(self) -> npt.NDArray[np.float64]:
+        """(6, 6) of a step (translation, rotation vector) in the camera frame; map units^2, rad^2."""
+    @property
+    def reference_keyframe_id(self) -> int: ...
+    @property
+    def camera_from_reference(self) -> npt.NDArray[np.float64]:
+        """(4, 4)"""
+    @property
+    def tracked_landmarks(self) -> int: ...
+    @property
+    def features(self) -> int: ...
+    @property
+    def keyframe_inserted(self) -> bool: ...
+    @property
+    def moving_unplaced(self) -> int:
+        """Features on moving objects for which this keyframe had no depth."""
+    @property
+    def metric_scale(self) -> bool:
+        """Whether map units are metres."""
+    @property
+    def stage_ms(self) -> dict[str, float]:
+        """Wall-clock milliseconds: extract, merge, match, local_map, mapping."""
+
+class Engine:
+    """Monocular SLAM frame by frame. The GIL is released while it works; calls from several threads take turns."""
+
+    def __init__(self, camera: CameraModel, options: EngineOptions) -> None:
+        """ValueError names an option outside its range."""
+    def begin_frame(self, timestamp_ns: int, image: npt.NDArray[np.uint8]) -> None:
+        """Extract features of a C-contiguous (height, width) image. ValueError for another one or an earlier time."""
+    def finish_frame(
+        self,
+        track_image: npt.NDArray[np.uint32] | None,
+        object_ids: npt.NDArray[np.uint32],
+        categories: npt.NDArray[np.int32],
+        motion_states: npt.NDArray[np.uint8],
+        masks_fresh: bool,
+        depth_m: npt.NDArray[np.float32] | None,
+    ) -> TrackingResult:
+        """Track and map the begun frame. RuntimeError when none was begun, ValueError for arrays that do not fit."""
+    def flush(self) -> None:
+        """The end of the input: merge the background's work and adjust once more."""
+    def take_map_update(self) -> dict[str, npt.NDArray[Any]]:
+        """What changed since the last call, keyed like schemas.records.slam.MapUpdate's arrays."""
