@@ -46,13 +46,10 @@ class SlamService(FrameService):
     def process(self, bundle: Bundle) -> list[Outgoing]:
         """Track one frame."""
         engine = self._engine_for(bundle[topics.CALIBRATION])
-        try:
-            engine.begin_frame(bundle[topics.IMAGE])
-            objects, masks = self._masks(bundle.get(topics.OBJECTS))
-            depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
-            frame = engine.finish_frame(objects, masks, depth)
-        except ValueError as error:
-            raise InputError(f"frame {bundle.envelope.sequence}: {error}") from error
+        engine.begin_frame(bundle[topics.IMAGE])
+        objects, masks = self._masks(bundle.get(topics.OBJECTS))
+        depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
+        frame = engine.finish_frame(objects, masks, depth)
         self._note(frame)
         update = engine.take_map_update(bundle.timestamp_ns)
         outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
@@ -100,10 +97,7 @@ class SlamService(FrameService):
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )
-        try:
-            self._engine = SlamEngine(calibration, settings)
-        except ValueError as error:
-            raise InputError(str(error)) from error
+        self._engine = SlamEngine(calibration, settings)
         self._calibration = calibration
         return self._engine
 
