@@ -15,12 +15,11 @@ from services.recorder.message_schema import descriptor_set
 from services.recorder.recorded_key import topic_and_suffix
 from services.recorder.summary import closing_bytes
 from services.runtime.errors import InputError, ResourceError
+from services.runtime.session_chunk import DamagedChunkError, read_chunk
 from services.runtime.session_file import (
     CONFIG_METADATA,
     SESSION_METADATA,
-    DamagedChunkError,
     RecordedMessage,
-    read_chunk,
 )
 from services.runtime.session_scan import MAGIC, ScannedSession, scan_session
 

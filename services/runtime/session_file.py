@@ -2,39 +2,23 @@
 """A recorded session (MCAP), read: by topic, by time, by sequence; whole, or cut off and recovered."""
 
 import json
-import struct
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
-import zstandard
-from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
-from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
-from mcap.records import Channel, Chunk, ChunkIndex, Footer, McapRecord, Message, MessageIndex, Schema
-from mcap.stream_reader import CRCValidationError, breakup_chunk
+from mcap.records import Channel, ChunkIndex, Footer, McapRecord, Message
 
-from services.runtime.errors import InputError, KinemapError
-from services.runtime.session_scan import MAGIC, RECORD_HEAD_BYTES, read_footer, scan_session, summary_is_whole
+from services.runtime.errors import InputError
+from services.runtime.session_chunk import DAMAGE, DamagedChunkError, indexed_times, read_chunk
+from services.runtime.session_scan import MAGIC, read_footer, scan_session, summary_is_whole
 
 SESSION_METADATA = "kinemap.session"
 CONFIG_METADATA = "kinemap.config"
 _HOW_TO_RECOVER = "`python -m services.recorder.recovery FILE OUT` makes a whole session of what is there"
-_CHUNK_ERRORS = (
-    McapError,
-    CRCValidationError,
-    zstandard.ZstdError,
-    RuntimeError,
-    ValueError,
-    EOFError,
-    MemoryError,
-    OSError,
-    struct.error,
-)
 
 
 class RecordedMessage(NamedTuple):
@@ -55,19 +39,6 @@ class IndexedMessage:
     timestamp_ns: int
     number: int
     """among the messages of its key in its chunk"""
-
-
-class DamagedChunkError(KinemapError):
-    """A chunk's bytes are not those that were written."""
-
-
-def read_chunk(stream: BinaryIO, index: ChunkIndex) -> list[McapRecord]:
-    """The records of one chunk. Raises DamagedChunkError."""
-    try:
-        stream.seek(index.chunk_start_offset + RECORD_HEAD_BYTES)
-        return breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
-    except _CHUNK_ERRORS as error:
-        raise DamagedChunkError(str(error) or type(error).__name__) from error
 
 
 class SessionFile:
@@ -105,7 +76,7 @@ class SessionFile:
             try:
                 self._open_by_index(footer, size)
                 return
-            except _CHUNK_ERRORS as error:
+            except DAMAGE as error:
                 if not self._recover:
                     why = str(error) or type(error).__name__
                     raise InputError(f"{self.path}: its index is damaged ({why}); {_HOW_TO_RECOVER}") from error
@@ -119,7 +90,6 @@ class SessionFile:
         summary = reader.get_summary()
         if summary is None or (not summary.chunk_indexes and summary.statistics and summary.statistics.message_count):
             raise McapError("no chunk index")
-        self._schemas: dict[int, Schema] = dict(summary.schemas)
         self._channels: dict[int, Channel] = dict(summary.channels)
         self._chunks = sorted(summary.chunk_indexes, key=lambda chunk: chunk.chunk_start_offset)
         self._counts = dict(summary.statistics.channel_message_counts) if summary.statistics else {}
@@ -133,7 +103,7 @@ class SessionFile:
                 f"({sum(found.message_counts.values())} messages) are there; {_HOW_TO_RECOVER}"
             )
         self.recovered = found.problem or "its index is damaged"
-        self._schemas, self._channels, self._chunks = found.schemas, found.channels, found.chunks
+        self._channels, self._chunks = found.channels, found.chunks
         self._counts, self.metadata = found.message_counts, found.metadata
 
     @property
@@ -199,11 +169,13 @@ class SessionFile:
         wanted = {channel.id for channel in self._channels.values() if channel.topic == key}
         places: list[IndexedMessage] = []
         for chunk in self._chunks:
-            for channel_id in wanted & chunk.message_index_offsets.keys():
-                times = self._indexed_times(chunk, channel_id)
-                if times is None:
-                    times = [message.timestamp_ns for message in self._messages_of(chunk) if message.key == key]
-                places += [IndexedMessage(key, chunk, time_ns, number) for number, time_ns in enumerate(times)]
+            indexed = [
+                indexed_times(self._stream, chunk, number) for number in wanted & chunk.message_index_offsets.keys()
+            ]
+            if None in indexed or (self.recovered and chunk is self._chunks[-1]):
+                indexed = [[message.timestamp_ns for message in self._messages_of(chunk) if message.key == key]]
+            times = [time_ns for channel_times in indexed for time_ns in channel_times or ()]
+            places += [IndexedMessage(key, chunk, time_ns, number) for number, time_ns in enumerate(times)]
         return places
 
     def at(self, place: IndexedMessage) -> RecordedMessage:
@@ -229,19 +201,6 @@ class SessionFile:
     ) -> None:
         self.close()
 
-    def _indexed_times(self, chunk: ChunkIndex, channel_id: int) -> list[int] | None:
-        """Capture times of a channel's messages in the order they lie in the chunk; None where the index is damaged."""
-        self._stream.seek(chunk.message_index_offsets[channel_id])
-        head = self._stream.read(RECORD_HEAD_BYTES)
-        length = chunk.message_index_length
-        try:
-            index = MessageIndex.read(ReadDataStream(BytesIO(self._stream.read(length))))
-        except _CHUNK_ERRORS:
-            return None
-        if head[:1] != bytes([Opcode.MESSAGE_INDEX]) or index.channel_id != channel_id:
-            return None
-        return [time_ns for time_ns, _ in sorted(index.records, key=lambda entry: entry[1])]
-
     def _may_hold(self, chunk: ChunkIndex, keys: Collection[str]) -> bool:
         if not chunk.message_index_offsets or self.recovered:
             return True
@@ -259,14 +218,10 @@ class SessionFile:
         for record in records:
             if isinstance(record, Channel):
                 self._channels.setdefault(record.id, record)
-            elif isinstance(record, Message):
-                yield self._as_recorded(record)
-
-    def _as_recorded(self, message: Message) -> RecordedMessage:
-        channel = self._channels.get(message.channel_id)
-        if channel is None:
-            raise InputError(f"{self.path}: a message of channel {message.channel_id}, which it does not describe")
-        return RecordedMessage(channel.topic, message.sequence, message.log_time, message.data)
+            elif isinstance(record, Message) and (channel := self._channels.get(record.channel_id)) is not None:
+                yield RecordedMessage(channel.topic, record.sequence, record.log_time, record.data)
+            elif isinstance(record, Message) and not self._recover:
+                raise self._damaged(chunk, f"it holds channel {record.channel_id}, which the file does not describe")
 
     def _records_of(self, chunk: ChunkIndex) -> list[McapRecord]:
         if self._read[0] != chunk.chunk_start_offset:
