@@ -31,6 +31,7 @@ StageFlag = Annotated[
     str | None,
     typer.Option("--stage", help="What stays out of tracking: base (nothing), dynamic (all that may move), moving."),
 ]
+PortFlag = Annotated[int | None, typer.Option("--port", help="Port of the HTTP gateway [default: 8000].")]
 
 Overrides = dict[str, dict[str, Any]]
 

@@ -82,6 +82,7 @@ class PipelineRun:
     def _until_done(self) -> KinemapError | None:
         try:
             with progress_view(self.console) as view:
+                view.show(self.progress, time.monotonic())
                 self.services.up()
                 self._watch.until_done(view)
         except KeyboardInterrupt:

@@ -43,9 +43,10 @@ class _NowColumn(ProgressColumn):
         text = Text(f"{progress.frames_per_s:5.1f} fps  ")
         text.append(progress.state, _STATE_STYLE.get(progress.state, ""))
         text.append("  landmarks")
-        for label, count in progress.landmarks.items():
-            if count:
-                text.append(f" {count} {label.replace('_', ' ')}", _LABEL_STYLE.get(label, "yellow"))
+        counts = {label: count for label, count in progress.landmarks.items() if count}
+        for label, count in counts.items():
+            text.append(f" {count} {label.replace('_', ' ')}", _LABEL_STYLE.get(label, "yellow"))
+        text.append("" if counts else " none")
         text.append("  density ")
         text.append(progress.density, _DENSITY_STYLE.get(progress.density, ""))
         return text

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.cli.flags import ConfigFlag, OutFlag, Overrides, SetFlag, StageFlag, resolve_config
+from services.cli.flags import ConfigFlag, OutFlag, Overrides, PortFlag, SetFlag, StageFlag, resolve_config
 from services.cli.ports import is_free
 from services.cli.run import resolve_run, run_input
 from services.recorder.replay_pace import AsAnswered, Pace, RecordedRate
@@ -43,13 +43,18 @@ def replay(
     recover: Annotated[bool, typer.Option("--recover", help="Read what is whole of a file that was cut off.")] = False,
     stage: StageFlag = None,
     out: OutFlag = None,
+    port: PortFlag = None,
     serve: Annotated[bool, typer.Option("--serve", help="With --camera: keep everything up afterwards.")] = False,
     config: ConfigFlag = None,
     settings: SetFlag = None,
 ) -> None:
     """Feed a recorded session to whoever listens: all of it as it was, or (--camera) its camera to a new run."""
     if camera:
-        flags: Overrides = {"camera": {"input": str(file)}, "slam": {"stage": stage}}
+        flags: Overrides = {
+            "camera": {"input": str(file)},
+            "slam": {"stage": stage},
+            "mapstore": {"http_port": port},
+        }
         run_input(resolve_run(config, settings, flags, out), serve)
         return
     if not (math.isfinite(speed) and speed > 0.0):

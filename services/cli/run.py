@@ -8,7 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.cli.flags import ConfigFlag, InputArgument, OutFlag, Overrides, SetFlag, StageFlag, resolve_config
+from services.cli.flags import (
+    ConfigFlag,
+    InputArgument,
+    OutFlag,
+    Overrides,
+    PortFlag,
+    SetFlag,
+    StageFlag,
+    resolve_config,
+)
 from services.cli.pipeline_run import PipelineRun
 from services.cli.ports import any_free_port, require_gateway_port
 from services.cli.run_folder import new_run_folder, write_config
@@ -28,7 +37,7 @@ def run(
     frames: Annotated[int | None, typer.Option("--frames", help="Stop after this many frames.")] = None,
     calibration: Annotated[Path | None, typer.Option(help="Calibration of a folder of images or a video.")] = None,
     instances: Annotated[Path | None, typer.Option(help="Folder of instance masks [default: INPUT/instances].")] = None,
-    port: Annotated[int | None, typer.Option("--port", help="Port of the HTTP gateway.")] = None,
+    port: PortFlag = None,
     config: ConfigFlag = None,
     settings: SetFlag = None,
 ) -> None:
