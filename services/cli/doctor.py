@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from services.cli.doctor_checks import all_checks
 from services.cli.doctor_packages import Check
@@ -32,4 +33,4 @@ def doctor(
 
 def _line(check: Check) -> str:
     remedy = f"  ->  {check.remedy}" if check.ok is False and check.remedy else ""
-    return f"{_MARKS[check.ok]} {check.name}: {check.found}{remedy}"
+    return f"{_MARKS[check.ok]} " + escape(f"{check.name}: {check.found}{remedy}")

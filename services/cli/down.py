@@ -21,4 +21,4 @@ def down(folder: RunArgument = None) -> None:
     config = load_config(run_folder / CONFIG_NAME)
     Supervision(run_folder, config).down()
     export_results(config)
-    Console().print(f"down: {run_folder}", highlight=False, soft_wrap=True)
+    Console(markup=False).print(f"down: {run_folder}", highlight=False, soft_wrap=True)

@@ -81,7 +81,7 @@ def _compare(folders: list[Path]) -> None:
         table.add_column(name, overflow="fold")
     for row in compare(reports):
         table.add_row(row.what, *row.values)
-    Console().print(table, highlight=False)
+    Console(markup=False).print(table, highlight=False)
 
 
 def _evaluate_folder(given: Path, recover: bool) -> None:
@@ -101,4 +101,4 @@ def _evaluate_folder(given: Path, recover: bool) -> None:
     )
     usage = read_usage(folder / USAGE_NAME)
     report = evaluate_run(folder, folder / config.recorder.file, outcome, usage, recover=recover)
-    print_summary(Console(), report, folder)
+    print_summary(Console(markup=False), report, folder)

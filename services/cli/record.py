@@ -60,11 +60,13 @@ def record(
         with ZenohBus(resolved.bus, lossless=False) as entered:
             subscription = entered.subscribe(topic for topic in topics.TOPICS if topic.recorded)
             where = resolved.bus.router or resolved.bus.entry_point
-            Console().print(f"listening on {where} until the input's end or Ctrl-C", highlight=False, soft_wrap=True)
+            Console(markup=False).print(
+                f"listening on {where} until the input's end or Ctrl-C", highlight=False, soft_wrap=True
+            )
             count = _write(file, resolved, messages_of_bus(subscription, resolved, stop))
     else:
         count = _write(file, resolved, messages_of_input(resolved, stop))
-    Console().print(f"{file}: {count} messages", highlight=False, soft_wrap=True)
+    Console(markup=False).print(f"{file}: {count} messages", highlight=False, soft_wrap=True)
 
 
 def messages_of_input(config: Config, stop: threading.Event) -> Messages:

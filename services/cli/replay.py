@@ -71,7 +71,9 @@ def replay(
         _let_listeners_in(bus, wait_for or [], stop)
         count = Replayer(session, bus).play(pace, keys)
         ended = "stopped" if stop.is_set() else "done"
-        Console().print(f"{ended}: {count} messages of session {session.session}", highlight=False, soft_wrap=True)
+        Console(markup=False).print(
+            f"{ended}: {count} messages of session {session.session}", highlight=False, soft_wrap=True
+        )
 
 
 def _let_listeners_in(bus: Bus, services: list[str], stop: threading.Event) -> None:

@@ -88,7 +88,7 @@ def run_input(config: Config, serve: bool) -> None:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with ZenohBus(config.bus, lossless=False) as bus:
         services = Supervision(config.run.out, config, attached=True)
-        PipelineRun(config, services, bus, Console(), frames).drive(serve)
+        PipelineRun(config, services, bus, Console(markup=False), frames).drive(serve)
 
 
 def _make_absolute(config: Config) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from services.cli.down import RunArgument
@@ -20,7 +21,7 @@ def status(folder: RunArgument = None) -> None:
     run_folder = newest_run_folder(folder)
     statuses = Supervision(run_folder, load_config(run_folder / CONFIG_NAME)).status()
     console = Console()
-    console.print(str(run_folder), highlight=False, soft_wrap=True)
+    console.print(str(run_folder), markup=False, highlight=False, soft_wrap=True)
     console.print(status_table(statuses))
     if any(service.state != _RUNNING for service in statuses):
         raise typer.Exit(1)
@@ -38,6 +39,6 @@ def status_table(statuses: Iterable[ServiceStatus]) -> Table:
             "-" if service.pid is None else str(service.pid),
             f"{service.uptime_s} s" if service.pid is not None else "-",
             str(service.restarts),
-            service.problem.replace("[", r"\["),
+            escape(service.problem),
         )
     return table

@@ -26,6 +26,6 @@ def up(
     require_gateway_port(resolved)
     write_config(resolved)
     Supervision(resolved.run.out, resolved).up()
-    console = Console()
+    console = Console(markup=False)
     where = f"{resolved.run.out}, {gateway_url(resolved)}, bus {resolved.bus.entry_point}"
     console.print(f"up: {where}", highlight=False, soft_wrap=True)

@@ -196,6 +196,12 @@ def test_only_runs_are_compared(kinemap: Kinemap) -> None:
     _one_line(kinemap("evaluate", "a.tum", "run"), "a.tum: expected the folders of runs")
 
 
+def test_brackets_are_printed_as_they_are(kinemap: Kinemap) -> None:
+    folder = _kitti(Path("[red]k"))
+    assert kinemap("record", folder, "--file", "[bold].mcap").out == "[bold].mcap: 13 messages\n"
+    _one_line(kinemap("run", "[red]none"), "[red]none")
+
+
 def test_the_dump_can_be_given_back(kinemap: Kinemap) -> None:
     first = kinemap("config", "dump", "--set", "slam.stage=base")
     Path("c.toml").write_text(first.out)
