@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The motion service: the camera's own motion, and which instances move besides."""
