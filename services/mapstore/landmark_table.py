@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from schemas.records import MapUpdate, MotionState
 from services.mapstore.growing_table import GrowingTable
-from services.mapstore.landmark_cluster import LandmarkCluster
+from services.mapstore.landmark_cluster import STATES, LandmarkCluster
 
 Rows = npt.NDArray[np.intp]
 NOWHERE = -1
@@ -55,7 +55,7 @@ class LandmarkTable:
             {
                 "anchor_row": anchor_rows,
                 "position": update.landmark_position,
-                "state": update.landmark_state,
+                "state": np.where(update.landmark_state < STATES, update.landmark_state, MotionState.UNDECIDED),
                 "category": update.landmark_category,
                 "object_id": update.landmark_object_id,
                 "first_seen_ns": update.landmark_first_seen_ns,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A map.sqlite: made, opened, and refused when it is something else."""
 
+import os
 import sqlite3
 from pathlib import Path
 
@@ -42,8 +43,11 @@ def open_to_read(path: Path) -> sqlite3.Connection:
     """The map at `path`, read-only, also while a service writes it. Raises InputError when it is no such map."""
     if not path.is_file():
         raise InputError(f"{path}: no such file; expected a kinemap map (map.sqlite)")
+    options = "mode=ro"
+    if not os.access(path.parent, os.W_OK) and not path.with_name(f"{path.name}-wal").exists():
+        options = "immutable=1"  # SQLite cannot make the files beside it that it reads a WAL database by
     try:
-        connection = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True, isolation_level=None)
+        connection = sqlite3.connect(f"{path.resolve().as_uri()}?{options}", uri=True, isolation_level=None)
     except sqlite3.Error as error:
         raise InputError(f"{path}: cannot be read ({error})") from error
     try:

@@ -37,6 +37,28 @@ REPLACE_PROGRESS = "INSERT OR REPLACE INTO progress VALUES (1, ?, ?, ?, ?, ?)"
 
 NO_KEYFRAME = -1
 _NO_POSE = (None,) * 7
+_FLOATS = ("f4", "f8")
+_KEYFRAME = {
+    "id": ("i8", ("id",)),
+    "timestamp_ns": ("i8", ("timestamp_ns",)),
+    "map_id": ("i8", ("map_id",)),
+    "pose": ("f8", ("tx", "ty", "tz", "qx", "qy", "qz", "qw", "scale")),
+    "culled": ("u1", ("culled",)),
+    "parent_id": ("i8", ("parent_id",)),
+}
+"""MapUpdate's keyframe arrays: element type, and the columns of a row"""
+_LANDMARK = {
+    "id": ("i8", ("id",)),
+    "anchor_id": ("i8", ("anchor_id",)),
+    "position": ("f4", ("x", "y", "z")),
+    "state": ("u1", ("state",)),
+    "category": ("i4", ("category",)),
+    "object_id": ("u4", ("object_id",)),
+    "first_seen_ns": ("i8", ("first_seen_ns",)),
+    "last_seen_ns": ("i8", ("last_seen_ns",)),
+    "valid_until_ns": ("i8", ("valid_until_ns",)),
+}
+"""the same of landmarks"""
 
 
 def keyframe_rows(update: MapUpdate) -> Iterable[tuple[Any, ...]]:
@@ -146,36 +168,28 @@ def density_of(timestamp_ns: int, row: tuple[Any, ...]) -> Density:
 
 def update_of(connection: sqlite3.Connection) -> MapUpdate:
     """The whole map as one update."""
-    keyframes = _numbers(connection, "SELECT * FROM keyframes ORDER BY id", 13)
-    landmarks = _numbers(connection, "SELECT * FROM landmarks ORDER BY id", 11)
-    return MapUpdate(
-        timestamp_ns=0,
-        keyframe_id=_integers(keyframes[0]),
-        keyframe_timestamp_ns=_integers(keyframes[1]),
-        keyframe_map_id=_integers(keyframes[2]),
-        keyframe_pose=_floats(keyframes[3:11]),
-        keyframe_culled=_integers(keyframes[11]).astype(np.uint8),
-        keyframe_parent_id=_integers(keyframes[12]),
-        landmark_id=_integers(landmarks[0]),
-        landmark_anchor_id=_integers(landmarks[1]),
-        landmark_position=_floats(landmarks[2:5]).astype(np.float32),
-        landmark_state=_integers(landmarks[5]).astype(np.uint8),
-        landmark_category=_integers(landmarks[6]).astype(np.int32),
-        landmark_object_id=_integers(landmarks[7]).astype(np.uint32),
-        landmark_first_seen_ns=_integers(landmarks[8]),
-        landmark_last_seen_ns=_integers(landmarks[9]),
-        landmark_valid_until_ns=_integers(landmarks[10]),
-    )
+    keyframes = _rows(connection, "keyframes", _KEYFRAME)
+    landmarks = _rows(connection, "landmarks", _LANDMARK)
+    columns: dict[str, Any] = {f"keyframe_{name}": keyframes[name] for name in _KEYFRAME}
+    columns |= {f"landmark_{name}": landmarks[name] for name in _LANDMARK}
+    return MapUpdate(timestamp_ns=0, **columns)
 
 
-def _numbers(connection: sqlite3.Connection, query: str, columns: int) -> list[tuple[Any, ...]]:
-    rows = connection.execute(query).fetchall()
-    return list(zip(*rows, strict=True)) if rows else [()] * columns
+def _rows(
+    connection: sqlite3.Connection, table: str, layout: dict[str, tuple[str, tuple[str, ...]]]
+) -> npt.NDArray[np.void]:
+    """A table as a structured array, row by row from the cursor: a large map is never in memory as Python objects.
 
-
-def _integers(column: tuple[Any, ...]) -> npt.NDArray[np.int64]:
-    return np.array(column, dtype=np.int64)
-
-
-def _floats(columns: list[tuple[Any, ...]]) -> npt.NDArray[np.float64]:
-    return np.array(columns, dtype=np.float64).T.reshape(-1, len(columns))
+    What is not finite comes back as NaN; SQLite keeps NaN as NULL.
+    """
+    flat = [(column, kind) for kind, columns in layout.values() for column in columns]
+    names = ", ".join(f"ifnull({column}, 9e999)" if kind in _FLOATS else column for column, kind in flat)
+    cursor = connection.execute(f"SELECT {names} FROM {table} ORDER BY id")
+    rows = np.fromiter(cursor, dtype=np.dtype(flat))
+    for column, kind in flat:
+        if kind in _FLOATS:
+            rows[column][np.isinf(rows[column])] = np.nan
+    grouped = [
+        (name, kind, (len(columns),)) if len(columns) > 1 else (name, kind) for name, (kind, columns) in layout.items()
+    ]
+    return rows.view(np.dtype(grouped))

@@ -14,7 +14,7 @@ from services.mapstore.landmark_table import LandmarkTable
 from services.mapstore.map_view import NOT_YET, FrameColumns, KeyframeColumns, MapView
 
 NO_ROW = -1
-"""The row of a keyframe that a frame or a landmark does not name."""
+"""The reference of a frame that names none."""
 
 _NO_POSE = np.full(7, np.nan)
 _KEYFRAME_COLUMNS = tuple(field.name for field in fields(KeyframeColumns))
@@ -67,7 +67,8 @@ class MapState:
     def add_frame(self, sequence: int, frame: TrackedFrame) -> None:
         """Takes one frame's pose; sequence numbers rise."""
         relative, live = frame.camera_from_reference, frame.map_from_camera
-        reference = NO_ROW if relative is None else self._row_of_keyframe(frame.reference_keyframe_id)
+        named = relative is not None and frame.reference_keyframe_id >= 0
+        reference = self._row_of_keyframe(frame.reference_keyframe_id) if named else NO_ROW
         (row,) = self._frames.append(
             1,
             {
@@ -138,8 +139,6 @@ class MapState:
         return rows[inverse]
 
     def _row_of_keyframe(self, keyframe_id: int) -> int:
-        if keyframe_id < 0:
-            return NO_ROW
         row = self._keyframe_row.get(keyframe_id)
         if row is None:
             unknown = {"id": keyframe_id, "pose": np.nan, "parent_id": -1, "local_radius": -1.0, "local_reach": -1.0}

@@ -53,6 +53,7 @@ class MapstoreService(FrameService):
         """One frame: into the map, into the file, then to whoever asks."""
         sequence = bundle.envelope.sequence
         if sequence <= self._store.last_sequence:
+            self._log.warning_limited("frame_is_in_the_map", sequence=sequence, last=self._store.last_sequence)
             answered = self._store.density_of(sequence)
             return [] if answered is None else [Outgoing(topics.DENSITY, answered)]
         frame: TrackedFrame = bundle[topics.TRACKED_FRAME]

@@ -75,6 +75,17 @@ def test_landmarks_without_a_finite_position_are_left_out() -> None:
     assert state.view().clusters[0].landmark_id.tolist() == [0]
 
 
+def test_a_state_of_another_version_is_undecided_and_a_keyframe_without_a_number_is_nobodys_reference() -> None:
+    state = MapState()
+    state.add_frame(0, replace(tracked(0, 3), reference_keyframe_id=-1))
+    strange = with_keyframes(landmarks(0, 0, np.arange(2), np.ones((2, 3)), state=9), 0, 3)
+    state.apply(replace(strange, keyframe_id=np.array([keyframe_id(0), -1])))
+    view = state.view()
+    assert view.counts_by_state().tolist() == [0, 0, 0, 2, 0]
+    assert view.frames.reference_row.tolist() == [-1]
+    np.testing.assert_allclose(view.final_poses()[0, :3], [3, 0, 0])
+
+
 def test_a_landmark_follows_its_anchor_and_is_in_one_cluster_only() -> None:
     state = MapState()
     state.apply(with_keyframes(landmarks(0, 0, np.arange(2), np.ones((2, 3))), 0, 5))

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The durable map: what was put is what is loaded, and what is no map is refused in one line."""
 
+import re
 import sqlite3
+import subprocess
+import sys
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -19,6 +22,7 @@ from services.mapstore.store import MapStore
 from services.runtime.errors import InputError, ResourceError
 from tests.unit.mapstore.street_map import drive, landmarks, state_of, tracked, waiting, with_keyframes
 
+ROOT = Path(__file__).resolve().parents[3]
 NOTHING = Density(0, (1.0, 2.0, 3.0), 10.0, 30.0, 0, 0, 0, DensityLevel.UNKNOWN, True)
 
 
@@ -169,6 +173,52 @@ def test_a_full_disk_is_one_error_and_leaves_the_frames_before_readable(tmp_path
     assert_same_map(load_view(tmp_path / "map.sqlite"), state_of(11).view())
     store.close()
     assert_same_map(load_view(tmp_path / "map.sqlite"), state_of(11).view())
+
+
+def test_numbers_that_are_none_stay_out_of_the_map_after_loading_too(tmp_path: Path) -> None:
+    store = MapStore(tmp_path / "map.sqlite", "drive")
+    update = with_keyframes(landmarks(0, 0, np.arange(3), [[0, 0, 1], [np.nan, 0, 1], [0, 0, np.inf]]), 0, 5)
+    update.keyframe_pose[1] = np.nan
+    store.put(0, tracked(0, 0), update, NOTHING)
+    view = store.load().view()
+    assert view.counts_by_state().sum() == 1
+    assert np.isfinite(view.keyframes.pose).all(axis=1).tolist() == [True, False]
+    assert DynamicDensity().at(view, np.array([1.0, 0.0, 0.0]), 5.0, 30.0).observed_points == 1
+    store.close()
+
+
+def test_a_map_in_a_folder_nobody_may_write_to_can_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    filled(tmp_path / "map.sqlite", 4).close()
+    monkeypatch.setattr(map_file.os, "access", lambda *_: False)
+    assert load_view(tmp_path / "map.sqlite").sequence == 3
+
+
+FILLING = """
+import resource, signal, sys
+from pathlib import Path
+from services.mapstore.store import MapStore
+from services.runtime.errors import ResourceError
+from tests.unit.mapstore.street_map import drive
+from tests.unit.mapstore.test_store import NOTHING
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+store = MapStore(Path(sys.argv[1]), "drive")
+resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600_000))
+try:
+    for sequence, (frame, update) in enumerate(drive(2000, points=400, every=1)):
+        store.put(sequence, frame, update, NOTHING)
+except ResourceError as error:
+    print(error)
+"""
+
+
+@pytest.mark.real_processes
+def test_when_the_disk_takes_no_more_what_is_on_it_stays_readable(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", FILLING, str(tmp_path / "map.sqlite")]
+    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=True).stdout
+    (sequence,) = re.findall(r"the disk is full or failing .*; frames up to (\d+) stay readable\n$", said)
+    view = load_view(tmp_path / "map.sqlite")
+    assert view.sequence == int(sequence) > 0
+    assert view.counts_by_state().sum() == 400 * (view.sequence + 1)
 
 
 def test_an_empty_map_can_be_read(tmp_path: Path) -> None:
