@@ -32,14 +32,16 @@ class _PendingFrame:
     envelope: Envelope
     messages: dict[tuple[Topic, str], Message] = field(default_factory=dict)
     answers: set[str] = field(default_factory=set)
-    camera_keys: frozenset[str] | None = None
+    required: set[str] = field(default_factory=lambda: {topics.MANIFEST.key})
 
 
 class FrameLedger:
     """Collects the messages of frames and releases each frame once, its messages in the order of the topic table.
 
     A frame is complete when the camera's manifest and all that it lists are here, one message of every per-frame topic
-    of `producers`, and the answers of `answering`, behind which none of their messages of this frame can come.
+    of `producers`, the pose of a tracked frame, and the answers of `answering`, behind which nothing of theirs comes.
+    The end of input takes the place of a frame, with the last changes of the map.
+
     `lossless`: frames are released in sequence and only when complete. Otherwise (realtime) a complete frame releases
     all older ones as they are, and what comes later still goes out with the next.
 
@@ -55,10 +57,13 @@ class FrameLedger:
         capacity: int,
         recorded: Iterable[tuple[str, int]] = (),
     ) -> None:
-        self._required = frozenset(
+        self._per_frame = frozenset(
             topic.key
             for topic in topics.TOPICS
             if topic.per_frame and topic.recorded and topic.producer in producers and topic.producer != "camera"
+        )
+        self._at_the_end = {topics.END.key} | (
+            {topics.MAP_UPDATE.key} if topics.MAP_UPDATE.producer in producers else set()
         )
         self._answering = frozenset(answering) & frozenset(producers)
         self._lossless = lossless
@@ -84,8 +89,7 @@ class FrameLedger:
         if message.topic is topics.ANSWER:
             frame.answers.add(message.suffix)
         elif self._is_new(frame, message):
-            if message.topic is topics.MANIFEST:
-                frame.camera_keys = _RECORDED_KEYS.intersection(decode(topics.MANIFEST, message.payload).topics)
+            self._require(frame, message)
             frame.messages[message.topic, message.suffix] = message
         return self._release(sequence)
 
@@ -143,10 +147,16 @@ class FrameLedger:
         while len(self._recorded) > self._capacity * len(topics.TOPICS):
             del self._recorded[next(iter(self._recorded))]
 
+    def _require(self, frame: _PendingFrame, message: Message) -> None:
+        """Learn from a message which others its frame has. Raises ProtocolError when it cannot be read."""
+        if message.topic is topics.MANIFEST:
+            listed = decode(topics.MANIFEST, message.payload).topics
+            frame.required |= self._per_frame | _RECORDED_KEYS.intersection(listed)
+        elif message.topic is topics.END:
+            frame.required = set(self._at_the_end)
+        elif message.topic is topics.TRACKED_FRAME:
+            tracked = decode(topics.TRACKED_FRAME, message.payload).map_from_camera is not None
+            frame.required |= {topics.POSE.key} if tracked else set()
+
     def _complete(self, frame: _PendingFrame) -> bool:
-        if not self._answering <= frame.answers:
-            return False
-        keys = {topic.key for topic, _ in frame.messages}
-        if topics.END.key in keys:
-            return True
-        return frame.camera_keys is not None and frame.camera_keys <= keys and self._required <= keys
+        return self._answering <= frame.answers and frame.required <= {topic.key for topic, _ in frame.messages}

@@ -61,6 +61,15 @@ def test_the_end_waits_for_those_who_still_send() -> None:
     assert frame.envelope.sequence == 1
 
 
+def test_what_a_frame_can_have_is_waited_for_when_it_has_it() -> None:
+    ledger = lossless()
+    lost = [entry for entry in frame_messages(0) if entry.topic is not topics.POSE]
+    assert feed(ledger, lost) == []
+    assert len(ledger.add(message(topics.POSE, 0))) == 1
+    assert feed(ledger, [entry for entry in end_messages(1) if entry.topic is not topics.MAP_UPDATE]) == []
+    assert len(ledger.add(message(topics.MAP_UPDATE, 1))) == 1
+
+
 def test_a_repeated_frame_is_answered_again_and_not_written_again() -> None:
     ledger = lossless()
     feed(ledger, frame_messages(0))

@@ -44,23 +44,34 @@ class Others:
     def __init__(self, bus: ZenohBus) -> None:
         self._bus = bus
         self._answers = bus.subscribe([topics.ANSWER])
-        self._alive = threading.Event()
-        bus.watch_alive(lambda _, alive: self._alive.set() if alive else self._alive.clear())
+        self._changed = threading.Condition()
+        self._alive = False
+        bus.watch_alive(self._on_change)
 
-    def await_recorder(self) -> None:
-        assert self._alive.wait(PATIENCE_S)
+    def _on_change(self, _: str, alive: bool) -> None:
+        with self._changed:
+            self._alive = alive
+            self._changed.notify_all()
+
+    def await_recorder(self, *, alive: bool = True) -> None:
+        with self._changed:
+            assert self._changed.wait_for(lambda: self._alive is alive, PATIENCE_S)
 
     def send(self, messages: list[Message]) -> None:
         for message in messages:
             self._bus.publish(message.topic, message.payload, message.envelope, message.suffix)
 
-    def await_answer(self, sequence: int) -> None:
+    def deliver(self, frames: dict[int, list[Message]]) -> None:
+        """Send frames until all are answered; one that is not is sent again, as the camera and the others do."""
         give_up_s = time.monotonic() + PATIENCE_S
-        while time.monotonic() < give_up_s:
-            answer = self._answers.receive(0.5)
-            if answer is not None and (answer.suffix, answer.envelope.sequence) == ("recorder", sequence):
-                return
-        pytest.fail(f"no answer to frame {sequence}")
+        missing = dict(frames)
+        while missing:
+            assert time.monotonic() < give_up_s, f"no answer to {sorted(missing)}"
+            for messages in missing.values():
+                self.send(messages)
+            while missing and (answer := self._answers.receive(1.0)) is not None:
+                if answer.suffix == "recorder":
+                    missing.pop(answer.envelope.sequence, None)
 
 
 @pytest.fixture
@@ -79,12 +90,11 @@ def start(config: Config) -> subprocess.Popen[bytes]:
 def test_killed_in_the_middle(config: Config, others: Others) -> None:
     recorder = start(config)
     others.await_recorder()
-    for sequence in range(10):
-        others.send(frame_messages(sequence))
-    others.await_answer(9)
+    others.deliver({sequence: frame_messages(sequence) for sequence in range(10)})
     others.send(frame_messages(10)[:6])
     os.kill(recorder.pid, signal.SIGKILL)
     recorder.communicate()
+    others.await_recorder(alive=False)
     with SessionFile(config.run.out / "session.mcap", recover=True) as file:
         on_disk = [message.sequence for message in file.messages([topics.MANIFEST.key])]
     assert on_disk[:10] == list(range(10))
@@ -93,12 +103,8 @@ def test_killed_in_the_middle(config: Config, others: Others) -> None:
     started_s = time.monotonic()
     others.await_recorder()
     assert time.monotonic() - started_s < 5.0
-    for sequence in range(9, 20):
-        others.send(frame_messages(sequence))
-    others.await_answer(9)
-    others.await_answer(19)
-    others.send(end_messages(20))
-    others.await_answer(20)
+    others.deliver({sequence: frame_messages(sequence) for sequence in range(9, 20)})
+    others.deliver({20: end_messages(20)})
     recorder.terminate()
     recorder.communicate(timeout=PATIENCE_S)
     assert recorder.returncode == 0
@@ -110,8 +116,7 @@ def test_killed_in_the_middle(config: Config, others: Others) -> None:
 def test_told_to_end_in_the_middle_it_leaves_a_whole_file(config: Config, others: Others) -> None:
     recorder = start(config)
     others.await_recorder()
-    others.send(frame_messages(0))
-    others.await_answer(0)
+    others.deliver({0: frame_messages(0)})
     others.send(frame_messages(1)[:4])
     recorder.terminate()
     recorder.communicate(timeout=PATIENCE_S)
