@@ -132,6 +132,21 @@ def test_the_view_from_above_is_the_map_and_the_way(client: TestClient) -> None:
     np.testing.assert_allclose(way[-1], [20, 0], atol=1e-6)
 
 
+def test_the_same_question_has_the_same_answer_until_the_next_frame() -> None:
+    state = state_of(3)
+    live = live_map(state)
+    with client_of(live) as client:
+        here, wider = "/density?radius=5", "/density?radius=6"
+        first = [client.get(url).json() for url in (here, wider)]
+        assert [client.get(url).json() for url in (here, wider)] == first
+        assert [answer["radius"] for answer in first] == [5.0, 6.0]
+        state.add_frame(3, tracked(3, 0, 3.0))
+        live.show(state.view())
+        assert client.get(here).json()["position"] == [3.0, 0.0, 0.0]
+        many = [client.get(f"/density?pose={x},0,0").json()["position"][0] for x in (*range(80), *range(80))]
+        assert many == [*range(80), *range(80)]
+
+
 def test_a_new_frame_shows_at_once() -> None:
     state = state_of(3)
     live = live_map(state)
