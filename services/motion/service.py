@@ -86,4 +86,4 @@ class MotionService(FrameService):
 
 
 if __name__ == "__main__":
-    run_service(MotionService)
+    run_service(MotionService, NAME)

@@ -65,4 +65,4 @@ class TrackerService(FrameService):
 
 
 if __name__ == "__main__":
-    run_service(TrackerService)
+    run_service(TrackerService, NAME)
