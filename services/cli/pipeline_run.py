@@ -115,7 +115,7 @@ class PipelineRun:
             # What ended the run is what the user must hear; that its results are poor follows from it.
             self.console.print(f"no report: {result_error}", highlight=False, soft_wrap=True)
             return None
-        if report is not None:
+        if report is not None and report["frames"]["in"]:
             print_summary(self.console, report, folder)
         return report
 
