@@ -84,9 +84,9 @@ class Actor:
         return vertices @ pose[:3, :3].T + pose[:3, 3]
 
     def disc_centres(self, t_s: Floats) -> Floats:
-        """World (x, y) of its discs at several times, (T, discs, 2); far away where it is not present."""
+        """World (x, y) of its discs at several times, (T, discs, 2); NaN where it is not present."""
         gone = self.speed.distance_m(t_s)
         step = self.path.point(gone + _HALF_STEP_M) - self.path.point(gone - _HALF_STEP_M)
         ahead = step[:, None, :2] / np.hypot(step[:, 0], step[:, 1])[:, None, None]
         discs = self.path.point(gone)[:, None, :2] + np.array(self.disc_offsets_m)[None, :, None] * ahead
-        return np.where(self.path.inside(gone)[:, None, None], discs, 1e6)
+        return np.where(self.path.inside(gone)[:, None, None], discs, np.nan)

@@ -58,6 +58,11 @@ def merged(meshes: Sequence[Mesh]) -> Mesh:
     )
 
 
+def cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cross products of rows, (N, 3); several times as fast as numpy's on the few rows of one shape."""
+    return np.asarray(a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]])
+
+
 def quads(corners: ArrayLike, uv: ArrayLike, texture: int, tint: Tint = WHITE, one_part: bool = False) -> Mesh:
     """Mesh of quads. corners: (Q, 4, 3); uv: (Q, 4, 2) or (4, 2) for all. Triangles without area are left out."""
     points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
@@ -69,7 +74,7 @@ def quads(corners: ArrayLike, uv: ArrayLike, texture: int, tint: Tint = WHITE, o
     part = np.zeros(2 * count) if one_part else np.repeat(np.arange(count), 2)
     vertices = points.reshape(-1, 3)
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    keep = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-9
+    keep = np.abs(cross(b - a, c - a)).max(axis=1) > 1e-9
     total = int(keep.sum())
     return Mesh(
         vertices,

@@ -22,11 +22,8 @@ class SpeedProfile:
     def __init__(self, knots: list[tuple[float, float]]) -> None:
         self._t, self._v = (np.array(column, np.float64) for column in zip(*knots, strict=True))
         steps = 0.5 * (self._v[1:] + self._v[:-1]) * np.diff(self._t)
+        self.always_still = bool(np.all(self._v == 0.0))
         self._way = np.concatenate([[0.0], np.cumsum(steps)])
-
-    @property
-    def always_still(self) -> bool:
-        return bool(np.all(self._v == 0.0))
 
     def speed_m_s(self, t_s: Floats | float) -> Floats:
         """Speed at a time."""

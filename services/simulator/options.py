@@ -74,7 +74,7 @@ class StreetOptions:
             self._expect("fx_px", 0.2 * self.width, 10.0 * self.width)
         self._expect("frames", 1, _MAX_FRAMES)
         self._expect("rate_hz", 0.1, 1000.0)
-        self._expect("speed_m_s", 0.5, 15.0)
+        self._expect("speed_m_s", 2.0, 15.0)
         self._expect("camera_height_m", 0.3, 4.0)
         self._expect("empty_start_m", 0.0, 0.5 * self.drive_length_m)
         self._expect("threads", 0, 256)

@@ -13,14 +13,14 @@ from services.runtime.errors import InputError
 from services.simulator import people, vehicles
 from services.simulator.actors import MOVING_M_S, Actor
 from services.simulator.camera import EgoTrajectory
-from services.simulator.meshes import Mesh
+from services.simulator.meshes import Mesh, Tint
 from services.simulator.motion import AcrossPath, LanePath, Path, SpeedProfile
 from services.simulator.options import StreetOptions
 from services.simulator.road import BAY_CENTRE_M, LANE_CENTRE_M, Road
 
 Floats = NDArray[np.float64]
 
-_TRIES = 400
+_TRIES = 500
 _TIME_STEP_S = 0.2
 _MARGIN_M = 0.3
 _EMPTY_RADIUS_M = 31.0
@@ -50,6 +50,7 @@ class TrafficPlanner:
         self._options, self._road, self._ego, self._texture = options, road, ego, texture
         self._rng = np.random.default_rng([options.seed, 4])
         self._actors: list[Actor] = []
+        self._car_meshes: dict[tuple[vehicles.BodyStyle, Tint], Mesh] = {}
         duration_s = road.length_m / options.speed_m_s
         self._times = np.arange(0.0, duration_s + 2.0, _TIME_STEP_S)
         self._discs: list[Floats] = [self._ego_discs()]
@@ -123,10 +124,12 @@ class TrafficPlanner:
         rng = np.random.default_rng([self._options.seed, 5, instance_id])
         style = vehicles.STYLES[int(rng.choice(3, p=[0.42, 0.42, 0.16]))]
         paint = vehicles.PAINTS[int(rng.integers(0, len(vehicles.PAINTS)))]
+        if (style, paint) not in self._car_meshes:
+            self._car_meshes[style, paint] = vehicles.car_mesh(style, paint, self._texture)
         half = 0.5 * style.size_m[0] - 0.75
         return Looks(
             category="car",
-            mesh=vehicles.car_mesh(style, paint, self._texture),
+            mesh=self._car_meshes[style, paint],
             size_m=style.size_m,
             gait=None,
             disc_radius_m=1.05,
@@ -164,7 +167,7 @@ class TrafficPlanner:
         s = float(self._rng.choice(places))
         direction = 1.0 if self._rng.random() < 0.5 else -1.0
         cruise = float(self._rng.uniform(4.5, 9.0))
-        passing = self._ego.time_s(s - float(self._rng.uniform(11.0, 34.0)))
+        passing = self._ego.time_s(s - float(self._rng.uniform(11.0, 44.0)))
         start = -direction * 90.0
         arrival = (90.0 - LANE_CENTRE_M) / cruise
         speed = SpeedProfile([(passing - arrival, cruise), (passing, cruise)])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.meshes import Mesh
+from services.simulator.meshes import Mesh, cross
 
 Floats = NDArray[np.float64]
 
@@ -43,10 +43,10 @@ def table_of(mesh: Mesh, vertices: Floats, instance: NDArray[np.int32]) -> Trian
     """Table of a mesh whose vertices (V, 3) are given in the world frame."""
     corner = vertices[mesh.triangles]
     e1, e2 = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    normal = np.cross(e1, e2)
+    normal = cross(e1, e2)
     area = np.einsum("ij,ij->i", normal, normal)[:, None]
     # Gradients of the barycentric coordinates belonging to the second and third corner.
-    grad_1, grad_2 = np.cross(e2, normal) / area, np.cross(normal, e1) / area
+    grad_1, grad_2 = cross(e2, normal) / area, cross(normal, e1) / area
     d1, d2 = mesh.uv[:, 1] - mesh.uv[:, 0], mesh.uv[:, 2] - mesh.uv[:, 0]
     gradient = d1[:, :, None] * grad_1[:, None, :] + d2[:, :, None] * grad_2[:, None, :]
     return TriangleTable(

@@ -188,12 +188,13 @@ def _street_furniture(
     pieces = []
     turn = np.pi if side > 0 else 0.0
     kerb = KERB_M + 0.75
+    lamp, waste = greenery.lamp_mesh(texture), greenery.bin_mesh(texture)
     for k, s in enumerate(np.arange(first + (4.0 if side > 0 else 9.0), last, 13.0)):
         at = float(s + rng.uniform(-2.0, 2.0))
         if road.near_junction(at, 10.0):
             continue
         if k % 3 == 2:
-            thing = greenery.lamp_mesh(texture)
+            thing = lamp
         elif rng.random() < 0.75:
             thing = greenery.tree_mesh(rng, texture)
         else:
@@ -201,7 +202,6 @@ def _street_furniture(
         yaw = turn if k % 3 == 2 else (0.0 if side < 0 else np.pi)
         pieces.append(thing.transformed(road.pose(at, side * kerb, yaw, KERB_HEIGHT_M)))
         if rng.random() < 0.35:
-            waste = greenery.bin_mesh(texture)
             place = road.pose(at + 1.6, side * (PAVEMENT_EDGE_M - 0.45), float(rng.uniform(-0.3, 0.3)), KERB_HEIGHT_M)
             pieces.append(waste.transformed(place))
     return pieces
