@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from schemas.records import MapUpdate, MaskSource, MotionState, TrackedFrame, TrackingState
+from schemas.records import Density, DensityLevel, MapUpdate, MaskSource, MotionState, TrackedFrame, TrackingState
 from services.mapstore.map_state import MapState
 from services.mapstore.map_view import MapView
 
 FRAME_NS = 100_000_000
 LOOKING_ALONG_X = (-0.5, 0.5, -0.5, 0.5)
 """map_from_camera of a camera that looks along the map's x axis, z up"""
+NO_DENSITY = Density(0, (1.0, 2.0, 3.0), 10.0, 30.0, 0, 0, 0, DensityLevel.UNKNOWN, True)
 PASSING_CAR = 7
 PARKED_CAR = 8
 

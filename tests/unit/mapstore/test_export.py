@@ -13,8 +13,10 @@ from services.mapstore.export.kitti import trajectory_kitti
 from services.mapstore.export.pcd import POINT, map_pcd, points_of
 from services.mapstore.export.tum import keyframes_tum, trajectory_tum
 from services.mapstore.map_state import MapState
+from services.mapstore.store import MapStore
 from services.runtime.errors import InputError
 from tests.unit.mapstore.street_map import (
+    NO_DENSITY,
     PARKED_CAR,
     PASSING_CAR,
     drive,
@@ -25,7 +27,6 @@ from tests.unit.mapstore.street_map import (
     waiting,
     with_keyframes,
 )
-from tests.unit.mapstore.test_store import NOTHING, MapStore
 
 
 def read_pcd(content: bytes) -> np.ndarray:
@@ -106,7 +107,7 @@ def test_pcd_opens_in_open3d(tmp_path: Path) -> None:
 def test_export_writes_the_same_bytes_every_time(tmp_path: Path) -> None:
     store = MapStore(tmp_path / "map.sqlite", "drive")
     for sequence, (frame, update) in enumerate(drive(30)):
-        store.put(sequence, frame, update, NOTHING)
+        store.put(sequence, frame, update, NO_DENSITY)
     store.close()
     outs = [export_map(tmp_path / "map.sqlite", tmp_path / name, ("tum", "kitti", "pcd")) for name in ("a", "b")]
     assert [path.name for path in outs[0]] == ["trajectory.tum", "keyframes.tum", "trajectory.kitti", "map.pcd"]
@@ -120,7 +121,7 @@ def test_export_writes_the_same_bytes_every_time(tmp_path: Path) -> None:
 def test_of_maps_that_were_never_joined_the_longest_is_exported(tmp_path: Path) -> None:
     store = MapStore(tmp_path / "map.sqlite", "drive")
     for sequence, (frame, update) in enumerate(drive(8)):
-        store.put(sequence, replace(frame, map_id=2) if sequence > 5 else frame, update, NOTHING)
+        store.put(sequence, replace(frame, map_id=2) if sequence > 5 else frame, update, NO_DENSITY)
     store.close()
     (trajectory, _) = export_map(tmp_path / "map.sqlite", tmp_path, ["tum"])
     assert len(trajectory.read_text().splitlines()) == 6

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from schemas.records import Density, DensityLevel, MapUpdate
+from schemas.records import MapUpdate
 from services.mapstore import map_file
 from services.mapstore.density import DynamicDensity
 from services.mapstore.export import load_view
@@ -20,16 +20,15 @@ from services.mapstore.map_state import MapState
 from services.mapstore.map_view import FrameColumns, MapView
 from services.mapstore.store import MapStore
 from services.runtime.errors import InputError, ResourceError
-from tests.unit.mapstore.street_map import drive, landmarks, state_of, tracked, waiting, with_keyframes
+from tests.unit.mapstore.street_map import NO_DENSITY, drive, landmarks, state_of, tracked, waiting, with_keyframes
 
 ROOT = Path(__file__).resolve().parents[3]
-NOTHING = Density(0, (1.0, 2.0, 3.0), 10.0, 30.0, 0, 0, 0, DensityLevel.UNKNOWN, True)
 
 
 def filled(path: Path, frames: int) -> MapStore:
     store = MapStore(path, "drive")
     for sequence, (frame, update) in enumerate(drive(frames)):
-        store.put(sequence, frame, update, NOTHING)
+        store.put(sequence, frame, update, NO_DENSITY)
     return store
 
 
@@ -64,7 +63,7 @@ def test_a_map_is_continued_where_it_ends(tmp_path: Path) -> None:
     again = MapStore(tmp_path / "map.sqlite", "drive")
     for sequence, (frame, update) in enumerate(drive(23)):
         if sequence > again.last_sequence:
-            again.put(sequence, frame, update, NOTHING)
+            again.put(sequence, frame, update, NO_DENSITY)
     again.close()
     assert_same_map(load_view(tmp_path / "map.sqlite"), state_of(23).view())
 
@@ -72,16 +71,16 @@ def test_a_map_is_continued_where_it_ends(tmp_path: Path) -> None:
 def test_a_frame_is_never_put_twice(tmp_path: Path) -> None:
     store = filled(tmp_path / "map.sqlite", 3)
     with pytest.raises(InputError, match="frame 2, expected one after 2"):
-        store.put(2, tracked(2, 0), MapUpdate(0), NOTHING)
+        store.put(2, tracked(2, 0), MapUpdate(0), NO_DENSITY)
     store.close()
 
 
 def test_what_was_answered_is_kept(tmp_path: Path) -> None:
     store = MapStore(tmp_path / "map.sqlite", "drive")
     nowhere = replace(DynamicDensity().nowhere(state_of(1).view(), 10.0, float("inf")), timestamp_ns=0)
-    store.put(0, tracked(0, 0), MapUpdate(0), NOTHING)
+    store.put(0, tracked(0, 0), MapUpdate(0), NO_DENSITY)
     store.put(1, waiting(0), MapUpdate(0), nowhere)
-    assert store.density_of(0) == NOTHING
+    assert store.density_of(0) == NO_DENSITY
     assert repr(store.density_of(1)) == repr(nowhere)
     assert store.density_of(2) is None
     store.close()
@@ -90,10 +89,10 @@ def test_what_was_answered_is_kept(tmp_path: Path) -> None:
 def test_removed_landmarks_leave_a_tombstone_and_may_come_back(tmp_path: Path) -> None:
     store, ids = MapStore(tmp_path / "map.sqlite", "drive"), np.arange(3)
     points = with_keyframes(landmarks(0, 0, ids, np.ones((3, 3))), 0)
-    store.put(0, tracked(0, 0), points, NOTHING)
-    store.put(1, tracked(1, 0), MapUpdate(1, removed_landmark_id=np.array([0, 2, 99])), NOTHING)
+    store.put(0, tracked(0, 0), points, NO_DENSITY)
+    store.put(1, tracked(1, 0), MapUpdate(1, removed_landmark_id=np.array([0, 2, 99])), NO_DENSITY)
     assert store.load().view().counts_by_state().sum() == 1
-    store.put(2, tracked(2, 0), landmarks(2, 0, np.array([2]), np.ones(3)), NOTHING)
+    store.put(2, tracked(2, 0), landmarks(2, 0, np.array([2]), np.ones(3)), NO_DENSITY)
     assert store.load().view().counts_by_state().sum() == 2
     store.close()
     with sqlite3.connect(tmp_path / "map.sqlite") as connection:
@@ -114,7 +113,7 @@ def test_what_changed_after_the_last_frame_is_in_the_map(tmp_path: Path) -> None
 def test_readers_see_whole_frames_while_the_store_writes(tmp_path: Path) -> None:
     store = filled(tmp_path / "map.sqlite", 6)
     assert load_view(tmp_path / "map.sqlite").sequence == 5
-    store.put(6, tracked(6, 5), MapUpdate(6), NOTHING)
+    store.put(6, tracked(6, 5), MapUpdate(6), NO_DENSITY)
     assert load_view(tmp_path / "map.sqlite").sequence == 6
     store.close()
 
@@ -169,7 +168,7 @@ def test_a_full_disk_is_one_error_and_leaves_the_frames_before_readable(tmp_path
     store._connection.execute(f"PRAGMA max_page_count = {pages}")
     many = landmarks(11, 10, 5_000_000 + np.arange(20_000), np.ones((20_000, 3)))
     with pytest.raises(ResourceError, match=r"the disk is full or failing .*; frames up to 10 stay readable"):
-        store.put(11, tracked(11, 10), many, NOTHING)
+        store.put(11, tracked(11, 10), many, NO_DENSITY)
     assert_same_map(load_view(tmp_path / "map.sqlite"), state_of(11).view())
     store.close()
     assert_same_map(load_view(tmp_path / "map.sqlite"), state_of(11).view())
@@ -179,7 +178,7 @@ def test_numbers_that_are_none_stay_out_of_the_map_after_loading_too(tmp_path: P
     store = MapStore(tmp_path / "map.sqlite", "drive")
     update = with_keyframes(landmarks(0, 0, np.arange(3), [[0, 0, 1], [np.nan, 0, 1], [0, 0, np.inf]]), 0, 5)
     update.keyframe_pose[1] = np.nan
-    store.put(0, tracked(0, 0), update, NOTHING)
+    store.put(0, tracked(0, 0), update, NO_DENSITY)
     view = store.load().view()
     assert view.counts_by_state().sum() == 1
     assert np.isfinite(view.keyframes.pose).all(axis=1).tolist() == [True, False]
@@ -198,14 +197,13 @@ import resource, signal, sys
 from pathlib import Path
 from services.mapstore.store import MapStore
 from services.runtime.errors import ResourceError
-from tests.unit.mapstore.street_map import drive
-from tests.unit.mapstore.test_store import NOTHING
+from tests.unit.mapstore.street_map import NO_DENSITY, drive
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 store = MapStore(Path(sys.argv[1]), "drive")
 resource.setrlimit(resource.RLIMIT_FSIZE, (600_000, 600_000))
 try:
     for sequence, (frame, update) in enumerate(drive(2000, points=400, every=1)):
-        store.put(sequence, frame, update, NOTHING)
+        store.put(sequence, frame, update, NO_DENSITY)
 except ResourceError as error:
     print(error)
 """
