@@ -23,6 +23,7 @@ DAMAGE = (
     ValueError,
     EOFError,
     MemoryError,
+    OverflowError,
     OSError,
     struct.error,
 )
