@@ -167,7 +167,7 @@ class TrafficPlanner:
         s = float(self._rng.choice(places))
         direction = 1.0 if self._rng.random() < 0.5 else -1.0
         cruise = float(self._rng.uniform(4.5, 9.0))
-        passing = self._ego.time_s(s - float(self._rng.uniform(11.0, 44.0)))
+        passing = self._ego.time_s(s - (10.0 + 34.0 * float(self._rng.random()) ** 3))
         start = -direction * 90.0
         arrival = (90.0 - LANE_CENTRE_M) / cruise
         speed = SpeedProfile([(passing - arrival, cruise), (passing, cruise)])
