@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The durable map: every frame is one transaction, so that a kill leaves a whole frame or none of it."""
 
+import contextlib
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
@@ -65,7 +66,10 @@ class MapStore:
         self._guarded(lambda: self._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone())
 
     def close(self) -> None:
-        """The file stays as the last `put` left it."""
+        """Leaves one file as the last `put` left it, unless somebody reads it now: then the log stays beside it."""
+        with contextlib.suppress(sqlite3.Error):
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            self._connection.execute("PRAGMA journal_mode = DELETE")
         self._connection.close()
 
     def _put_frame(self, sequence: int, frame: TrackedFrame, update: MapUpdate, density: Density) -> None:

@@ -110,6 +110,26 @@ def test_what_changed_after_the_last_frame_is_in_the_map(tmp_path: Path) -> None
     np.testing.assert_allclose(view.final_poses()[0, :3], [0.0, 3.0, 0.0])
 
 
+def test_a_closed_map_is_one_file_that_reading_adds_nothing_to(tmp_path: Path) -> None:
+    filled(tmp_path / "map.sqlite", 3).close()
+    load_view(tmp_path / "map.sqlite")
+    assert [path.name for path in tmp_path.iterdir()] == ["map.sqlite"]
+
+
+def test_a_map_that_is_read_can_be_closed_and_opened_again(tmp_path: Path) -> None:
+    store = filled(tmp_path / "map.sqlite", 3)
+    reader = map_file.open_to_read(tmp_path / "map.sqlite")
+    reader.execute("BEGIN")
+    assert reader.execute("SELECT count(*) FROM frames").fetchone() == (3,)
+    store.close()
+    again = MapStore(tmp_path / "map.sqlite", "drive")
+    again.put(3, tracked(3, 0), MapUpdate(3), NO_DENSITY)
+    assert reader.execute("SELECT count(*) FROM frames").fetchone() == (3,)
+    reader.close()
+    again.close()
+    assert load_view(tmp_path / "map.sqlite").sequence == 3
+
+
 def test_readers_see_whole_frames_while_the_store_writes(tmp_path: Path) -> None:
     store = filled(tmp_path / "map.sqlite", 6)
     assert load_view(tmp_path / "map.sqlite").sequence == 5
