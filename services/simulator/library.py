@@ -8,7 +8,7 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from services.simulator import facades, people, surfaces, vehicles
+from services.simulator import facades, people, surfaces, vehicle_textures, vehicles
 from services.simulator.surfaces import Image, coloured, noise, to_image
 
 SIGN_COUNT = 4
@@ -44,8 +44,8 @@ def paint_library(seed: int) -> dict[str, Image]:
         textures[name] = facades.paint_facade(_generator(seed, name), style)
     for body in vehicles.STYLES:
         name = f"side_{body.name}"
-        textures[name] = vehicles.paint_side(_generator(seed, name), body)
-    textures |= vehicles.paint_parts(_generator(seed, "car parts"))
+        textures[name] = vehicle_textures.paint_side(_generator(seed, name), body)
+    textures |= vehicle_textures.paint_parts(_generator(seed, "car parts"))
     textures |= people.paint_clothes(_generator(seed, "clothes"))
     for kind in range(SIGN_COUNT):
         textures[f"sign_{kind}"] = _sign(_generator(seed, f"sign_{kind}"), kind)
