@@ -25,7 +25,7 @@ class GroundOptions:
     band_share: float = 0.05
     largest_tilt: float = 0.2
     """rad between the road's normal and the camera's y axis"""
-    normal_memory: float = 0.8
+    normal_memory: float = 0.9
     """share of the normal of the images before in that of this one"""
 
 
@@ -137,7 +137,7 @@ def _least_squares(
     weight = weight[agrees]
     rows = np.column_stack((points.current[agrees], np.ones(int(agrees.sum())))) * weight[:, None]
     normal_matrix = rows.T @ rows
-    hold = np.eye(3) * 0.002 * float(np.trace(normal_matrix))
+    hold = np.eye(3) * 0.02 * float(np.trace(normal_matrix))
     hold -= np.outer(plane, plane) * (hold[0, 0] / float(plane @ plane))
     right = rows.T @ (parallax.inverse_depth[agrees] * weight) + hold @ plane
     return np.asarray(np.linalg.solve(normal_matrix + hold, right))

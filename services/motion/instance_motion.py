@@ -20,18 +20,22 @@ class InstanceMotionOptions:
     """How sure each kind of evidence is."""
 
     least_samples: int = 5
+    few_samples: int = 16
+    """at so many samples the flow's noise counts 1.4 times: they lie at edges, or between things that hide the rest"""
     least_noise_px: float = 0.1
     direction_error: float = 0.012
     """rad, of the camera's direction of travel: across the epipolar line in shares of the parallax"""
-    contact_error_px: float = 1.0
+    contact_error_px: float = 0.8
     """of the lower edge of a mask"""
-    depth_error: float = 0.06
+    depth_error: float = 0.045
     """of an object's depth against that of its contact, as a share: bumpers hang over wheels"""
-    thin_depth_error: float = 0.035
+    thin_depth_error: float = 0.03
     """the same of categories that stand straight above their contact"""
     thin_categories: tuple[str, ...] = ("person", "bicycle", "motorcycle")
     slope_error: float = 0.02
     """of that depth, for each camera height that it lies farther aside than two: roads are crowned, verges slope"""
+    level_share: float = 0.05
+    """that the ground before an object may differ from the plane, in inverse depth, and still be the plane"""
     ground_margin_px: int = 8
     """below an object, where flow mixes with the object's"""
     expected_speed: float = 0.25
@@ -106,7 +110,9 @@ class InstanceMotionEstimator:
         if not self._ego.motion.has_baseline:
             return self._without_baseline(inside, box_px)
         contact = find_contact(labels, instance_id, box_px)
-        return self._with_baseline(inside, box_px, contact, intrinsics, distortion)
+        thin = category in self._options.thin_categories
+        depth_error = self._options.thin_depth_error if thin else self._options.depth_error
+        return self._with_baseline(inside, box_px, contact, depth_error, intrinsics, distortion)
 
     def _inside(
         self, labels: npt.NDArray[np.uint32], instance_id: int, box_px: tuple[int, int, int, int]
@@ -138,6 +144,7 @@ class InstanceMotionEstimator:
         inside: npt.NDArray[np.intp],
         box_px: tuple[int, int, int, int],
         contact: GroundContact | None,
+        depth_error: float,
         intrinsics: FloatArray,
         distortion: tuple[float, ...],
     ) -> MotionEvidence:
@@ -146,6 +153,7 @@ class InstanceMotionEstimator:
         across, spread = _middle(self._parallax.across[inside] * focal)
         length_px = float(np.median(self._parallax.length[inside])) * focal
         flow_noise_px = 2.0 * self._ego.noise_px * float(flow_noise_growth(np.array(length_px))) + options.least_noise_px
+        flow_noise_px *= float(np.sqrt(1.0 + options.few_samples / len(inside)))
         across_noise = float(
             np.linalg.norm((flow_noise_px, options.direction_error * length_px, _of_median(spread, box_px)))
         )
@@ -153,7 +161,7 @@ class InstanceMotionEstimator:
         lower = inside[self._samples.pixel[inside, 1] >= box_px[1] + (1.0 - options.lower_share) * box_px[3]]
         if len(lower) < options.least_samples:
             lower = inside
-        nearest, farthest, share = self._standing_along(lower, contact, intrinsics, distortion)
+        nearest, farthest, share = self._standing_along(lower, contact, depth_error, intrinsics, distortion)
         observed = self._parallax.along[lower] * focal
         beyond, along_spread = _middle(observed - np.clip(observed, farthest, nearest))
         expected = np.clip(observed, farthest, np.where(np.isfinite(nearest), nearest, farthest))
@@ -176,6 +184,7 @@ class InstanceMotionEstimator:
         self,
         chosen: npt.NDArray[np.intp],
         contact: GroundContact | None,
+        depth_error: float,
         intrinsics: FloatArray,
         distortion: tuple[float, ...],
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -205,7 +214,7 @@ class InstanceMotionEstimator:
         share = np.linalg.norm(
             np.broadcast_arrays(
                 options.contact_error_px * per_row / inverse_depth,
-                options.depth_error,
+                depth_error,
                 options.slope_error * np.maximum(aside - 2.0, 0.0),
             ),
             axis=0,
@@ -225,9 +234,8 @@ class InstanceMotionEstimator:
         moves = plane * self._parallax.gain[before] * samples.focal_px > options.least_expected_px
         if int(moves.sum()) < options.least_samples:
             return 1.0, 1.0
-        factors = self._parallax.inverse_depth[before][moves] / plane[moves]
-        low_factor, high_factor = np.clip(np.quantile(factors, (0.3, 0.7)), 0.4, 2.5)
-        return min(1.0, float(low_factor)), max(1.0, float(high_factor))
+        factor = float(np.clip(np.median(self._parallax.inverse_depth[before][moves] / plane[moves]), 0.4, 2.5))
+        return min(1.0, factor + options.level_share), max(1.0, factor - options.level_share)
 
     def _probability(self, log_odds: float) -> float:
         limit = self._options.largest_log_odds

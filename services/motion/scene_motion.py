@@ -104,7 +104,12 @@ class SceneMotion:
         estimator = InstanceMotionEstimator(samples, background, ego, ground, self._options.instance)
         evidence = {
             instance.instance_id: estimator.assess(
-                masks.labels, instance.instance_id, _whole_box(instance, grey.shape), intrinsics, distortion
+                masks.labels,
+                instance.instance_id,
+                _whole_box(instance, grey.shape),
+                intrinsics,
+                distortion,
+                instance.category,
             )
             for instance in masks.instances
         }

@@ -27,8 +27,8 @@ class MotionConfig(BaseModel):
         description="rad that the direction of travel may lie off the optical axis where the background does not tell; "
         "large for a camera that does not look ahead",
     )
-    contact_error_px: float = Field(1.0, gt=0, description="error of the lower edge of a mask")
+    contact_error_px: float = Field(0.8, gt=0, description="error of the lower edge of a mask")
     depth_error: float = Field(
-        0.06, gt=0, description="error of an object's depth against that of its contact with the ground, as a share"
+        0.045, gt=0, description="error of an object's depth against that of its contact with the ground, as a share"
     )
     expected_speed: float = Field(0.25, gt=0, description="of what moves, in the camera's own speed")
