@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -61,11 +61,11 @@ class Others:
         for message in messages:
             self._bus.publish(message.topic, message.payload, message.envelope, message.suffix)
 
-    def deliver(self, frames: dict[int, list[Message]]) -> None:
+    def deliver(self, frames: dict[int, list[Message]], ended: Callable[[], bool] = lambda: False) -> None:
         """Send frames until all are answered; one that is not is sent again, as the camera and the others do."""
         give_up_s = time.monotonic() + PATIENCE_S
         missing = dict(frames)
-        while missing:
+        while missing and not ended():
             assert time.monotonic() < give_up_s, f"no answer to {sorted(missing)}"
             for messages in missing.values():
                 self.send(messages)
@@ -132,3 +132,32 @@ def test_a_file_of_another_session_is_one_line_and_exit_code_2(config: Config) -
     assert recorder.returncode == 2
     assert b"Traceback" not in said
     assert said.decode().splitlines()[-1].endswith("holds something that is no recorded session; choose another folder")
+
+
+def test_a_full_disk_is_one_line_and_exit_code_2_and_the_file_is_whole(config: Config, others: Others) -> None:
+    disk = config.run.out / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1500k", "tmpfs", disk], check=False).returncode != 0:
+        pytest.skip("mounting a small disk needs rights that this user does not have")
+    config.recorder.file = disk / "session.mcap"
+    (config.run.out / "config.toml").write_text(tomli_w.dumps(dump_config(config)), encoding="utf-8")
+    recorder = start(config)
+    try:
+        others.await_recorder()
+        for first in range(0, 1000, 20):
+            batch = range(first, first + 20)
+            others.deliver(
+                {sequence: frame_messages(sequence) for sequence in batch}, lambda: recorder.poll() is not None
+            )
+        _, said = recorder.communicate(timeout=PATIENCE_S)
+        assert recorder.returncode == 2
+        assert b"Traceback" not in said
+        assert "No space left on device; the recording ends here" in said.decode().splitlines()[-1]
+        with SessionFile(disk / "session.mcap") as file:
+            sequences = [message.sequence for message in file.messages([topics.MANIFEST.key])]
+        assert sequences == list(range(len(sequences)))
+        assert len(sequences) > 10
+    finally:
+        recorder.kill()
+        recorder.wait()
+        subprocess.run(["umount", disk], check=True)
