@@ -32,6 +32,9 @@ SERVICES: dict[str, Callable[[Config], FrameService]] = {
     "mapstore": MapstoreService,
 }
 LIMIT_S = 240.0
+SHORT_FRAMES = 30
+SHORT_STREET: dict[str, Any] = {"seed": 3, "width": 480, "height": 144, "empty_start_m": 0.0, "crossing_people": 4}
+"""A drive with moving and parked things from its first frames on."""
 
 
 def run_config(out: Path, source: str = "simulator", **sections: dict[str, Any]) -> Config:
@@ -40,6 +43,11 @@ def run_config(out: Path, source: str = "simulator", **sections: dict[str, Any])
     camera = {"input": source, **sections.pop("camera", {})}
     run = {"out": str(out), "session": "test"}
     return load_config(None, {"run": run, "camera": camera, "mapstore": mapstore, **sections})
+
+
+def short_drive(out: Path, **sections: dict[str, Any]) -> Config:
+    """The first SHORT_FRAMES of SHORT_STREET."""
+    return run_config(out, camera={"max_frames": SHORT_FRAMES}, simulator=SHORT_STREET, **sections)
 
 
 class _Host:

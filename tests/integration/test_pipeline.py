@@ -11,10 +11,7 @@ import pytest
 from schemas import topics
 from schemas.records import TrackingState
 from services.mapstore.export import export_map
-from tests.pipeline_rig import PipelineRig, run_config
-
-FRAMES = 40
-STREET = {"width": 480, "height": 144, "empty_start_m": 10.0, "leading_cars": 0}
+from tests.pipeline_rig import SHORT_FRAMES, PipelineRig, short_drive
 
 
 def digests(rig: PipelineRig) -> dict[str, str]:
@@ -26,7 +23,7 @@ def digests(rig: PipelineRig) -> dict[str, str]:
 def drive(
     out: Path, interfere: Callable[[PipelineRig], None] = lambda rig: None, **sections: dict[str, object]
 ) -> PipelineRig:
-    rig = PipelineRig(run_config(out, camera={"max_frames": FRAMES}, simulator=STREET, **sections))
+    rig = PipelineRig(short_drive(out, **sections))
     rig.run(interfere)
     return rig
 
@@ -39,10 +36,10 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> PipelineRig:
 def test_every_frame_has_every_message(undisturbed: PipelineRig) -> None:
     for topic in topics.TOPICS:
         if topic.per_frame and topic not in (topics.IMAGE_RIGHT, topics.CALIBRATION_RIGHT):
-            expected = set(range(FRAMES))
+            expected = set(range(SHORT_FRAMES))
             heard = set(undisturbed.payloads[topic])
             # The last map update belongs to the end of input, one past the last frame.
-            assert heard - {FRAMES} == expected, topic.key
+            assert heard - {SHORT_FRAMES} == expected, topic.key
 
 
 def test_the_camera_is_followed_and_things_are_told_apart(undisturbed: PipelineRig) -> None:
@@ -53,14 +50,14 @@ def test_the_camera_is_followed_and_things_are_told_apart(undisturbed: PipelineR
     assert all(state is TrackingState.TRACKING for state in states[first:])
     true_steps = [pose.world_from_camera[:3, 3] for pose in undisturbed.records(topics.TRUE_POSE).values()]
     driven_m = np.linalg.norm(true_steps[-1] - true_steps[first])
-    last = tracked[FRAMES - 1].map_from_camera
+    last = tracked[SHORT_FRAMES - 1].map_from_camera
     assert np.linalg.norm(last[:3] - tracked[first].map_from_camera[:3]) == pytest.approx(driven_m, rel=0.15)
     assert abs(last[2]) < 0.1 * driven_m, "z is up: the street is level"
 
 
 def test_only_whom_the_table_names_gives_a_topic(undisturbed: PipelineRig) -> None:
     answers = undisturbed.payloads[topics.ANSWER]
-    assert set(answers) == set(range(FRAMES + 1))
+    assert set(answers) == set(range(SHORT_FRAMES + 1))
 
 
 def test_the_same_run_gives_the_same_bytes(undisturbed: PipelineRig, tmp_path: Path) -> None:
@@ -77,7 +74,7 @@ def test_a_killed_service_changes_no_byte(undisturbed: PipelineRig, tmp_path: Pa
 
     def kill_once(rig: PipelineRig) -> None:
         sequence = rig.loops["slam"].sequence
-        if sequence >= FRAMES // 2 and not killed_at:
+        if sequence >= SHORT_FRAMES // 2 and not killed_at:
             killed_at.append(sequence)
             rig.restart(name)
 
