@@ -16,10 +16,14 @@ PATH = "/density?pose=current"
 
 
 def ask_steadily(url: str, rate: float, seconds: float, keep_alive: bool) -> tuple[list[float], int]:
-    """Milliseconds of every answer, counted from when its request was due, and how many were not 200."""
+    """Milliseconds of every answer, counted from when its request was due, and how many were not 200.
+
+    Ends early when the gateway is gone: the run is over, and what it broke off as it closed is not counted.
+    """
     address = urlsplit(url).netloc
     connection = http.client.HTTPConnection(address, timeout=10)
-    durations, failed = [], 0
+    durations: list[float] = []
+    failed, broken_off = 0, False
     started = time.perf_counter()
     for number in range(round(rate * seconds)):
         due = started + number / rate
@@ -28,9 +32,12 @@ def ask_steadily(url: str, rate: float, seconds: float, keep_alive: bool) -> tup
             connection.request("GET", PATH)
             answer = connection.getresponse()
             answer.read()
+            broken_off = False
             failed += answer.status != 200
+        except ConnectionRefusedError:
+            return durations, failed - broken_off
         except OSError:
-            failed += 1
+            failed, broken_off = failed + 1, True
             connection.close()
         durations.append((time.perf_counter() - due) * 1e3)
         if not keep_alive:
@@ -48,14 +55,14 @@ def main() -> None:
     parser.add_argument("--new-connections", action="store_true", help="one connection a request")
     arguments = parser.parse_args()
     process = psutil.Process(arguments.pid) if arguments.pid else None
-    before = process.cpu_times() if process else None
+    before, started = (process.cpu_times() if process else None), time.perf_counter()
     durations, failed = ask_steadily(arguments.url, arguments.rate, arguments.seconds, not arguments.new_connections)
     p50, p95, p99 = np.percentile(durations, (50, 95, 99))
     print(f"{len(durations)} requests, {failed} failed, p50 {p50:.1f} ms, p95 {p95:.1f} ms, p99 {p99:.1f} ms")
-    if process and before:
+    if process and before and process.is_running():
         after = process.cpu_times()
         busy_s = after.user + after.system - before.user - before.system
-        print(f"mapstore process: {100 * busy_s / arguments.seconds:.1f} % of a core")
+        print(f"mapstore process: {100 * busy_s / (time.perf_counter() - started):.1f} % of a core")
 
 
 if __name__ == "__main__":
