@@ -35,7 +35,7 @@ app.command()(doctor)
 def main() -> None:
     """Run the command line; exit code 2 for input that cannot be used, 1 for what else went wrong."""
     try:
-        app()
+        app(prog_name="kinemap")
     except KinemapError as error:
         print(f"kinemap: error: {error}", file=sys.stderr)
         sys.exit(error.exit_code)

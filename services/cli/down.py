@@ -12,7 +12,7 @@ from services.cli.run_results import export_results
 from services.cli.supervision import Supervision
 from services.runtime.config import load_config
 
-RunArgument = Annotated[Path | None, typer.Argument(metavar="[RUN]", help="Folder of the run [default: the newest].")]
+RunArgument = Annotated[Path | None, typer.Argument(metavar="[RUN]", help="Folder of the run (default: the newest).")]
 
 
 def down(folder: RunArgument = None) -> None:

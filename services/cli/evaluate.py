@@ -35,7 +35,7 @@ def evaluate(
     ] = None,
     align: Annotated[Alignment, typer.Option(help="What is free of the estimate's frame.")] = Alignment.SIM3,
     frames: Annotated[
-        int | None, typer.Option(min=1, help="Frames in the input, for the coverage [default: the true poses].")
+        int | None, typer.Option(min=1, help="Frames in the input, for the coverage (default: the true poses).")
     ] = None,
     delta: Annotated[int, typer.Option(min=1, help="Frames that the relative error spans.")] = 1,
     plot: Annotated[Path | None, typer.Option(help="Write a picture of both trajectories (PNG).")] = None,

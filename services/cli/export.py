@@ -14,11 +14,11 @@ from services.runtime.errors import InputError
 
 def export(
     source: Annotated[
-        Path | None, typer.Argument(metavar="[RUN]", help="Folder of a run or a map.sqlite [default: the newest run].")
+        Path | None, typer.Argument(metavar="[RUN]", help="Folder of a run or a map.sqlite (default: the newest run).")
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="Folder to write to [default: the map's].")] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Folder to write to (default: the map's).")] = None,
     formats: Annotated[
-        list[str] | None, typer.Option("--format", "-f", help="tum, kitti, pcd; repeatable [default: tum and pcd].")
+        list[str] | None, typer.Option("--format", "-f", help="tum, kitti, pcd; repeatable (default: tum and pcd).")
     ] = None,
 ) -> None:
     """Write trajectory.tum, keyframes.tum, map.pcd and the like from the map of a run."""

@@ -18,7 +18,7 @@ SetFlag = Annotated[
     typer.Option("--set", "-s", metavar="SECTION.FIELD=VALUE", help="One value over file and environment; repeatable."),
 ]
 OutFlag = Annotated[
-    Path | None, typer.Option("--out", "-o", help="Folder for everything the run writes [default: runs/<time>].")
+    Path | None, typer.Option("--out", "-o", help="Folder for everything the run writes (default: runs/<time>).")
 ]
 InputArgument = Annotated[
     str | None,
@@ -31,7 +31,7 @@ StageFlag = Annotated[
     str | None,
     typer.Option("--stage", help="What stays out of tracking: base (nothing), dynamic (all that may move), moving."),
 ]
-PortFlag = Annotated[int | None, typer.Option("--port", help="Port of the HTTP gateway [default: 8000].")]
+PortFlag = Annotated[int | None, typer.Option("--port", help="Port of the HTTP gateway (default: 8000).")]
 
 Overrides = dict[str, dict[str, Any]]
 

@@ -36,7 +36,7 @@ def run(
     serve: Annotated[bool, typer.Option("--serve", help="Keep everything up afterwards, until Ctrl-C.")] = False,
     frames: Annotated[int | None, typer.Option("--frames", help="Stop after this many frames.")] = None,
     calibration: Annotated[Path | None, typer.Option(help="Calibration of a folder of images or a video.")] = None,
-    instances: Annotated[Path | None, typer.Option(help="Folder of instance masks [default: INPUT/instances].")] = None,
+    instances: Annotated[Path | None, typer.Option(help="Folder of instance masks (default: INPUT/instances).")] = None,
     port: PortFlag = None,
     config: ConfigFlag = None,
     settings: SetFlag = None,

@@ -11,7 +11,10 @@ from services.runtime.zenoh_bus import open_session
 
 
 def serve(config: Config) -> None:
-    """Listen at the configured address until SIGTERM."""
+    """Listen at the configured address until SIGTERM; with a router there is nothing to listen for."""
+    if config.bus.router is not None:
+        ServiceHost.catch_signals().wait()
+        return
     with open_session(config.bus, listen=config.bus.entry_point, connect=False):
         stop = ServiceHost.catch_signals()
         stop.wait()
