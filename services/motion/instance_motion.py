@@ -41,6 +41,8 @@ class InstanceMotionOptions:
     expected_speed: float = 0.25
     """of what moves, in the camera's own speed"""
     least_expected_px: float = 1.0
+    prior_log_odds: float = 0.3
+    """that what a segmenter calls potentially dynamic moves, before anything is measured"""
     largest_log_odds: float = 4.0
     lower_share: float = 0.6
     """the share of an instance, from below, whose depth is compared with that of its contact"""
@@ -239,7 +241,7 @@ class InstanceMotionEstimator:
 
     def _probability(self, log_odds: float) -> float:
         limit = self._options.largest_log_odds
-        return float(1.0 / (1.0 + np.exp(-np.clip(log_odds, -limit, limit))))
+        return float(1.0 / (1.0 + np.exp(-np.clip(log_odds + self._options.prior_log_odds, -limit, limit))))
 
 
 def _log_odds(residual_px: float, noise_px: float, moved_px: float) -> float:

@@ -48,10 +48,11 @@ class DirectionPrior:
     samples_per_vote: float = 8.0
 
     def deviation(self, motion: CameraMotion) -> FloatArray:
-        """Sideways parts of the direction of travel in sigmas, (2,); backwards counts as forwards."""
-        sideways = _tangent(np.array(self.direction))
-        along = float(np.dot(self.direction, motion.translation))
-        return np.asarray(sideways @ motion.translation / (self.sigma * max(abs(along), 0.1)))
+        """Sideways part of the direction of travel in sigmas, (3,); backwards counts as forwards."""
+        direction = np.array(self.direction)
+        along = float(direction @ motion.translation)
+        sideways = motion.translation - along * direction
+        return np.asarray(sideways / (self.sigma * max(abs(along), 0.1)))
 
 
 def refine_motion(
@@ -59,8 +60,8 @@ def refine_motion(
 ) -> CameraMotion:
     """The rotation and direction that minimise the samples' distances from their epipolar lines, starting at `start`."""
 
-    def moved(motion: CameraMotion, delta: FloatArray) -> CameraMotion:
-        translation = motion.translation + delta[3:] @ _tangent(motion.translation)
+    def moved(motion: CameraMotion, delta: FloatArray, tangent: FloatArray) -> CameraMotion:
+        translation = motion.translation + delta[3:] @ tangent
         return CameraMotion(
             rotation_from_vector(delta[:3]) @ motion.rotation, translation / np.linalg.norm(translation)
         )
@@ -68,17 +69,18 @@ def refine_motion(
     motion = start
     growth = flow_noise_growth(measure_parallax(start, samples.current, samples.previous).along * samples.focal_px)
     for _ in range(iterations):
+        tangent = _tangent(motion.translation)
 
-        def residuals(delta: FloatArray, at: CameraMotion = motion) -> FloatArray:
-            parallax = measure_parallax(moved(at, delta), samples.current, samples.previous)
+        def residuals(delta: FloatArray, at: CameraMotion = motion, tangent: FloatArray = tangent) -> FloatArray:
+            parallax = measure_parallax(moved(at, delta, tangent), samples.current, samples.previous)
             return parallax.across * samples.focal_px / growth
 
-        def expected(delta: FloatArray, at: CameraMotion = motion) -> FloatArray:
-            return prior.deviation(moved(at, delta)) * np.sqrt(prior.samples_per_vote)
+        def expected(delta: FloatArray, at: CameraMotion = motion, tangent: FloatArray = tangent) -> FloatArray:
+            return prior.deviation(moved(at, delta, tangent)) * np.sqrt(prior.samples_per_vote)
 
         step = _robust_step(residuals, 5, expected)
-        motion = moved(motion, step)
-        if float(np.abs(step).max()) < 1e-7:
+        motion = moved(motion, step, tangent)
+        if float(np.abs(step).max()) < 1e-6:
             break
     return motion
 
@@ -93,7 +95,11 @@ def motion_cost(motion: CameraMotion, samples: FlowSamples, prior: DirectionPrio
 
 
 def _tangent(direction: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.svd(direction[None])[2][1:])
+    """Two unit vectors (2, 3) at right angles to a unit vector (3,) and to each other."""
+    axis = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    first = np.cross(direction, axis)
+    first /= np.linalg.norm(first)
+    return np.stack((first, np.cross(direction, first)))
 
 
 def _robust_step(

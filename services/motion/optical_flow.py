@@ -42,6 +42,9 @@ class DenseFlow:
             raise InputError(f"optical flow preset {self._options.preset!r}: expected one of {', '.join(PRESETS)}")
         self._algorithm = cv2.DISOpticalFlow.create(PRESETS[self._options.preset])
         self._algorithm.setFinestScale(self._options.finest_level)
+        # the way back only serves as a check: its costly variational refinement is left out
+        self._check = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
+        self._check.setFinestScale(self._options.finest_level)
 
     def previous_from_current(
         self, current: npt.NDArray[np.uint8], previous: npt.NDArray[np.uint8]
@@ -60,7 +63,7 @@ class DenseFlow:
             current = np.asarray(cv2.resize(current, size, interpolation=cv2.INTER_AREA), np.uint8)
             previous = np.asarray(cv2.resize(previous, size, interpolation=cv2.INTER_AREA), np.uint8)
         flow = self._algorithm.calc(current, previous, None)
-        back = self._algorithm.calc(previous, current, None)
+        back = self._check.calc(previous, current, None)
         columns, rows = np.meshgrid(np.arange(size[0], dtype=np.float32), np.arange(size[1], dtype=np.float32))
         returned = cv2.remap(back, columns + flow[..., 0], rows + flow[..., 1], cv2.INTER_LINEAR)
         returned += flow

@@ -15,7 +15,7 @@ class MotionFilterOptions:
     memory: float = 0.85
     """share of the log-odds that the next frame still counts: errors of neighbouring frames are alike"""
     decided_log_odds: float = 1.5
-    largest_log_odds: float = 5.0
+    largest_log_odds: float = 4.0
     largest_frame_log_odds: float = 3.0
     carried_weight: float = 0.5
     """of evidence on a mask that was carried here by the flow"""
