@@ -31,7 +31,7 @@ class Subscription(Protocol):
 
 
 class Bus(Protocol):
-    """Messages of one publisher arrive in the order they were sent. Every method may be called from any thread."""
+    """Messages of one publisher on one topic arrive in the order they were sent. Any thread may call any method."""
 
     def publish(self, topic: Topic, payload: bytes, envelope: Envelope, suffix: str = "") -> None:
         """Send; never waits for a slow subscriber longer than the transport's own buffer lasts."""
