@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from services.evaluation.alignment import Alignment
+from services.evaluation.frame_sheet import plot_frames, read_frames
 from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
 from services.evaluation.report import build_report, stage_times, write_report
 from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
@@ -16,6 +17,7 @@ from services.evaluation.trajectory_files import read_trajectory, write_tum
 from services.runtime.errors import InputError
 
 TRAJECTORY_NAME = "trajectory.tum"
+SHEET_FRAMES = 8
 
 
 def evaluate_run(
@@ -35,6 +37,7 @@ def evaluate_run(
     report = build_report(log, trajectory, services, outcome)
     write_report(report, folder / "report.json")
     _draw(folder, log, trajectory, report, services)
+    plot_frames(read_frames(session, SHEET_FRAMES, recover=recover), folder / "plots" / "frames.png")
     return report
 
 
