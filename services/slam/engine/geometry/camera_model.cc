@@ -47,6 +47,8 @@ CameraModel::CameraModel(int width_px, int height_px, double fx_px, double fy_px
     for (const double x : {0.0, 0.5 * width_px, 1.0 * width_px}) {
       for (const double y : {0.0, 0.5 * height_px, 1.0 * height_px}) {
         const Eigen::Vector2d pixel = Undistort({x, y});
+        const double error_px = (Distort(pixel) - Eigen::Vector2d(x, y)).norm();
+        if (!(error_px < 1)) Fail("a distortion that can be undone within 1 px at the image's border", error_px);
         low_corner_px_ = low_corner_px_.cwiseMin(pixel);
         high_corner_px_ = high_corner_px_.cwiseMax(pixel);
       }

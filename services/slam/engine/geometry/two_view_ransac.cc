@@ -16,6 +16,7 @@ constexpr double kHomographyBound = 5.991;
 constexpr double kFundamentalBound = 3.841;
 constexpr double kScoreBound = 5.991;
 constexpr size_t kSampleSize = 8;
+constexpr int kRefits = 5;
 
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
@@ -106,7 +107,7 @@ void ScoreFundamental(const std::vector<PixelPair>& pairs, double inverse_varian
   }
 }
 
-/// RANSAC over samples of eight, then one fit to the best sample's inliers, kept when it scores higher.
+/// RANSAC over samples of eight, then fits to all inliers of the best model as long as they raise the score.
 template <typename Solve, typename Denormalize, typename Score>
 TwoViewModel Ransac(const std::vector<PixelPair>& pairs, int iterations, RandomEngine& random, Solve solve,
                     Denormalize denormalize, Score score) {
@@ -133,11 +134,15 @@ TwoViewModel Ransac(const std::vector<PixelPair>& pairs, int iterations, RandomE
     for (size_t k = 0; k < kSampleSize; ++k) std::swap(order[k], order[k + random.Below(order.size() - k)]);
     consider({order.begin(), order.begin() + kSampleSize});
   }
-  std::vector<size_t> inliers;
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    if (best.inlier[i]) inliers.push_back(i);
+  for (int round = 0; round < kRefits; ++round) {
+    std::vector<size_t> inliers;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      if (best.inlier[i]) inliers.push_back(i);
+    }
+    const double score_before = best.score;
+    if (inliers.size() >= kSampleSize) consider(inliers);
+    if (best.score <= score_before) break;
   }
-  if (inliers.size() >= kSampleSize) consider(inliers);
   return best;
 }
 

@@ -8,8 +8,6 @@ namespace kinemap {
 namespace {
 constexpr double kWindowPx = 100;
 constexpr double kRatio = 0.9;
-// Coarse levels locate a point too badly for a first baseline.
-constexpr int kCoarsestOctave = 2;
 }  // namespace
 
 InitialMatcher::InitialMatcher(const Frame& reference) {
@@ -21,7 +19,7 @@ std::vector<FeatureMatch> InitialMatcher::Match(const Frame& reference, const Fr
   KeypointSearch search;
   for (int i = 0; i < reference.size(); ++i) {
     const int octave = reference.features->keypoints[i].octave;
-    if (!reference.IsFree(i) || octave > kCoarsestOctave) continue;
+    if (!reference.IsFree(i)) continue;
     const SearchWindow window{last_seen_px_[i], kWindowPx, octave, octave};
     const int best = search.FindBest(*current.features, reference.features->descriptors[i], window,
                                      kStrictHammingDistance, kRatio, [&](int j) { return current.IsFree(j); });

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+
+#include "optimization/bundle_adjustment.h"
+#include "optimization/pose_optimizer.h"
+#include "optimization/reprojection_cost.h"
+#include "synthetic/scene.h"
+
+namespace kinemap {
+namespace {
+
+using synthetic::CameraAt;
+using synthetic::Scene;
+using synthetic::TestCamera;
+
+std::vector<PoseObservation> Observations(const Scene& scene, const RigidTransform& camera_from_map, double noise_px,
+                                          uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 1);
+  std::vector<PoseObservation> observations;
+  for (const Eigen::Vector3d& point : scene.points()) {
+    const Eigen::Vector2d error(noise(random), noise(random));
+    observations.push_back({point, TestCamera().Project(camera_from_map * point) + noise_px * error, 1.0});
+  }
+  return observations;
+}
+
+TEST(PoseOptimizer, FindsThePoseDespiteWrongMatches) {
+  const Scene scene(200, 3, 5, 15);
+  const RigidTransform truth = CameraAt({0.5, -0.2, 1}, 0.1);
+  std::vector<PoseObservation> observations = Observations(scene, truth, 0.5, 3);
+  for (size_t i = 0; i < 60; ++i) observations[i].pixel_px += Eigen::Vector2d(40, -25);
+  const PoseEstimate estimate = PoseOptimizer(TestCamera()).Optimize(CameraAt({0.2, 0, 0.6}), observations);
+  EXPECT_LT((estimate.camera_from_map.Inverse().translation - Eigen::Vector3d(0.5, -0.2, 1)).norm(), 0.02);
+  EXPECT_LT(estimate.camera_from_map.rotation.angularDistance(truth.rotation), 0.003);
+  for (size_t i = 0; i < 60; ++i) EXPECT_FALSE(estimate.inlier[i]);
+  EXPECT_GT(estimate.inliers, 130);
+}
+
+TEST(PoseOptimizer, CovarianceIsTheSpreadOfItsEstimates) {
+  const Scene scene(60, 3, 5, 15);
+  const RigidTransform truth = CameraAt({0, 0, 0});
+  Matrix6d spread = Matrix6d::Zero(), covariance = Matrix6d::Zero();
+  constexpr int kTrials = 400;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const PoseEstimate estimate =
+        PoseOptimizer(TestCamera()).Optimize(truth, Observations(scene, truth, 0.5, 100 + trial));
+    const RigidTransform error = estimate.camera_from_map * truth.Inverse();
+    Vector6d step;
+    step << error.translation, 2 * error.rotation.vec();
+    spread += step * step.transpose() / kTrials;
+    // Observations were given unit variance but have a quarter of it.
+    covariance += 0.25 * estimate.information.inverse() / kTrials;
+  }
+  for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(spread(axis, axis) / covariance(axis, axis), 1, 0.25) << axis;
+}
+
+TEST(PoseOptimizer, SaysNothingOfTwoPoints) {
+  const Scene scene(2, 3, 5, 15);
+  EXPECT_EQ(PoseOptimizer(TestCamera()).Optimize({}, Observations(scene, {}, 0, 1)).inliers, 0);
+}
+
+TEST(ReprojectionCost, JacobiansAreItsDerivatives) {
+  const CameraModel camera = TestCamera();
+  const ReprojectionCost cost(camera, {300, 200}, 0.8);
+  std::array<double, kPoseSize> pose;
+  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
+  std::array<double, 3> point{0.4, -0.6, 6};
+  const double* parameters[] = {pose.data(), point.data()};
+  double residual[2], by_pose[2 * kPoseSize], by_point[2 * 3];
+  double* jacobians[] = {by_pose, by_point};
+  cost.Evaluate(parameters, residual, jacobians);
+  constexpr double kStep = 1e-6;
+  for (int axis = 0; axis < 6; ++axis) {
+    Vector6d step = Vector6d::Zero();
+    step[axis] = kStep;
+    std::array<double, kPoseSize> moved;
+    PoseManifold().Plus(pose.data(), step.data(), moved.data());
+    const double* moved_parameters[] = {moved.data(), point.data()};
+    double moved_residual[2];
+    cost.Evaluate(moved_parameters, moved_residual, nullptr);
+    for (int row = 0; row < 2; ++row) {
+      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_pose[row * kPoseSize + axis], 2e-3);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<double, 3> moved = point;
+    moved[axis] += kStep;
+    const double* moved_parameters[] = {pose.data(), moved.data()};
+    double moved_residual[2];
+    cost.Evaluate(moved_parameters, moved_residual, nullptr);
+    for (int row = 0; row < 2; ++row) {
+      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_point[row * 3 + axis], 2e-3);
+    }
+  }
+}
+
+TEST(PoseManifold, MinusUndoesPlus) {
+  std::array<double, kPoseSize> pose, moved;
+  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
+  Vector6d step, found;
+  step << 0.1, -0.2, 0.3, 0.05, 0.1, -0.02;
+  PoseManifold().Plus(pose.data(), step.data(), moved.data());
+  PoseManifold().Minus(moved.data(), pose.data(), found.data());
+  EXPECT_LT((found - step).norm(), 1e-9);
+}
+
+class Bundle : public ::testing::Test {
+ protected:
+  Bundle() {
+    for (int k = 0; k < 5; ++k) {
+      const RigidTransform truth = CameraAt({0.4 * k, 0, 0.3 * k}, 0.02 * k);
+      truth_.push_back(truth);
+      problem_.cameras.push_back({k, truth, k < 2});
+    }
+    for (size_t i = 0; i < scene_.points().size(); ++i) {
+      problem_.points.push_back({static_cast<LandmarkId>(i), scene_.points()[i]});
+      for (int k = 0; k < 5; ++k) {
+        problem_.observations.push_back(
+            {k, static_cast<int>(i), TestCamera().Project(truth_[k] * scene_.points()[i]), 1.0});
+      }
+    }
+  }
+
+  void Disturb() {
+    std::mt19937 random(8);
+    std::normal_distribution<double> noise(0, 1);
+    for (int k = 2; k < 5; ++k) {
+      Vector6d step;
+      for (int axis = 0; axis < 6; ++axis) step[axis] = 0.02 * noise(random);
+      problem_.cameras[k].camera_from_map = problem_.cameras[k].camera_from_map.PerturbedInTarget(step);
+    }
+    for (BundlePoint& point : problem_.points) {
+      point.position_in_map += 0.1 * Eigen::Vector3d(noise(random), noise(random), noise(random));
+    }
+  }
+
+  Scene scene_{100, 2, 5, 12};
+  std::vector<RigidTransform> truth_;
+  BundleProblem problem_;
+};
+
+TEST_F(Bundle, FindsCamerasAndPointsAgain) {
+  Disturb();
+  SolveBundle(TestCamera(), {10, 20}, &problem_);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_LT((problem_.cameras[k].camera_from_map.Matrix() - truth_[k].Matrix()).norm(), 1e-4) << "camera " << k;
+  }
+  for (size_t i = 0; i < scene_.points().size(); ++i) {
+    EXPECT_LT((problem_.points[i].position_in_map - scene_.points()[i]).norm(), 1e-3);
+  }
+}
+
+TEST_F(Bundle, LeavesOutWrongObservationsAndFixedCameras) {
+  Disturb();
+  for (size_t i = 0; i < problem_.observations.size(); i += 20) problem_.observations[i].pixel_px.x() += 30;
+  SolveBundle(TestCamera(), {10, 20}, &problem_);
+  for (size_t i = 0; i < problem_.observations.size(); ++i) {
+    EXPECT_EQ(problem_.observations[i].outlier, i % 20 == 0) << i;
+  }
+  EXPECT_EQ(problem_.cameras[0].camera_from_map.Matrix(), truth_[0].Matrix());
+  EXPECT_LT((problem_.cameras[4].camera_from_map.Matrix() - truth_[4].Matrix()).norm(), 1e-4);
+}
+
+TEST_F(Bundle, OneProblemGivesOneSolution) {
+  Disturb();
+  BundleProblem again = problem_;
+  SolveBundle(TestCamera(), {5, 5}, &problem_);
+  SolveBundle(TestCamera(), {5, 5}, &again);
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    EXPECT_EQ(problem_.points[i].position_in_map, again.points[i].position_in_map);
+  }
+}
+
+}  // namespace
+}  // namespace kinemap
