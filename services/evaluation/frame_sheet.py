@@ -19,6 +19,7 @@ from services.runtime.session_file import SessionFile
 _COLUMNS = 2
 _TINT = 0.45
 _WIDTH_IN = 12.0
+_LEAST_NAMED_PX = 20
 
 
 class SeenFrame(NamedTuple):
@@ -76,7 +77,9 @@ def plot_frames(frames: list[SeenFrame], path: Path) -> None:
         axes = figure.add_subplot(rows, _COLUMNS, number + 1)
         axes.imshow(tinted(frame), interpolation="nearest")
         for row in frame.objects.objects:
-            x, y, box_width, _ = row.box_px
+            x, y, box_width, box_height = row.box_px
+            if box_height < _LEAST_NAMED_PX:
+                continue  # the ids of a far row of cars would only cover each other
             axes.text(x + box_width / 2, max(y - 2, 4), str(row.object_id), color="white", fontsize=5, ha="center")
         axes.set_title(f"frame {frame.sequence}", fontsize=8, pad=2)
         axes.set_axis_off()

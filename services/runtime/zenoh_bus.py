@@ -40,7 +40,7 @@ def open_session(config: BusConfig, *, listen: str = "tcp/127.0.0.1:0", connect:
         values["listen/exit_on_failure"] = True
     for key, value in values.items():
         settings.insert_json5(key, json.dumps(value))
-    zenoh.init_log_from_env_or("error")
+    zenoh.init_log_from_env_or("off")  # what matters is raised; RUST_LOG=error shows the rest
     try:
         return zenoh.open(settings)
     except zenoh.ZError as error:
