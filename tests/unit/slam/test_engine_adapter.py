@@ -193,7 +193,7 @@ class TestWhatItRefuses:
 
     def test_an_image_of_another_type(self, room: TexturedRoom) -> None:
         engine = SlamEngine(calibration(room))
-        with pytest.raises(InputError, match="image: expected a C-contiguous uint8 array .* got a float32 array"):
+        with pytest.raises(InputError, match=r"image: expected a C-contiguous uint8 array .* got a float32 array"):
             engine.begin_frame(Image(1, np.zeros((room.height, room.width), np.float32)))  # type: ignore[arg-type]
 
     def test_time_that_runs_backwards(self, room: TexturedRoom) -> None:
