@@ -31,7 +31,7 @@ class EgoMotionOptions:
     least_inlier_ratio: float = 0.35
     prior: DirectionPrior = field(default_factory=DirectionPrior)
     standing_parallax_px: float = 0.35
-    """background displacement (90 % quantile) left after rotation, below which the camera is said to stand or only turn"""
+    """background displacement (90 % quantile) left after rotation, below which the camera stands or only turns"""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class EgoMotionEstimate:
 
 
 class EgoMotionEstimator:
-    """Five-point essential matrix (Nister 2004) with MAGSAC++ scores (Barath et al. 2020), then a robust least-squares fit.
+    """Five-point essential matrix (Nister 2004) scored by MAGSAC++ (Barath et al. 2020), then robust least squares.
 
     The motion of the image before is a second hypothesis: where traffic fills the view, the better of the two is kept.
     Whether there is a baseline at all is asked first, as an essential matrix of a pure rotation means nothing.
@@ -73,7 +73,7 @@ class EgoMotionEstimator:
         left_px = measure_parallax(turned, chosen.current, chosen.previous).length * chosen.focal_px
         parallax_px = float(np.quantile(left_px, 0.9))
         if parallax_px < options.standing_parallax_px:
-            noise_px = 1.4826 * float(np.median(left_px)) / np.sqrt(2 * np.log(2)) / 1.4826
+            noise_px = float(np.median(left_px)) / np.sqrt(2 * np.log(2))  # the median of a Rayleigh distribution
             return EgoMotionEstimate(
                 turned, "no baseline", len(chosen), float(np.mean(left_px < 1.0)), noise_px, flow_px, parallax_px
             )
@@ -87,9 +87,7 @@ class EgoMotionEstimator:
             motion, "", len(chosen), inlier_ratio, noise_px, flow_px, float(np.quantile(left_px, 0.9))
         )
 
-    def _best_motion(
-        self, samples: FlowSamples, before: CameraMotion | None
-    ) -> tuple[CameraMotion, float, float]:
+    def _best_motion(self, samples: FlowSamples, before: CameraMotion | None) -> tuple[CameraMotion, float, float]:
         starts = [self._from_essential_matrix(samples)]
         starts.append(before if before is not None and before.has_baseline else self._straight_on())
         refined = [refine_motion(start, samples, self._options.prior) for start in starts if start is not None]
@@ -120,7 +118,7 @@ class EgoMotionEstimator:
         )
         if essential is None or essential.shape != (3, 3):
             return None
-        return _in_front(essential, current, previous)
+        return _in_front(np.asarray(essential, np.float64), current, previous)
 
 
 def _in_front(essential: FloatArray, current: FloatArray, previous: FloatArray) -> CameraMotion:
@@ -136,9 +134,7 @@ def _in_front(essential: FloatArray, current: FloatArray, previous: FloatArray) 
     return motions[int(np.argmax(counts))]
 
 
-def _best_of_each_cell(
-    samples: FlowSamples, allowed: npt.NDArray[np.bool_], cell_px: int
-) -> npt.NDArray[np.intp]:
+def _best_of_each_cell(samples: FlowSamples, allowed: npt.NDArray[np.bool_], cell_px: int) -> npt.NDArray[np.intp]:
     """Indices of the best textured allowed sample in each square cell of the image, in the order of the cells."""
     index = np.flatnonzero(allowed)
     cell = samples.pixel[index] // cell_px

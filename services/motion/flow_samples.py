@@ -7,12 +7,13 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.motion.two_view import FloatArray, normalise
+from services.motion.optical_flow import FlowField
+from services.motion.two_view import FloatArray, PinholeCamera
 
 
 @dataclass(frozen=True)
 class FlowSampling:
-    """Which pixels are sampled. Texture is Harris' corner measure: along a mere edge flow slides (the aperture problem)."""
+    """Which pixels are sampled. Texture is Harris' corner measure: along a mere edge flow slides."""
 
     background_stride: int = 2
     """background is sampled at every so many-th pixel that instances are sampled at, in either direction"""
@@ -55,21 +56,14 @@ class FlowSamples:
 
 
 def sample_flow(
-    current: npt.NDArray[np.uint8],
-    previous: npt.NDArray[np.uint8],
-    flow: npt.NDArray[np.float32],
-    miss: npt.NDArray[np.float32],
-    labels: npt.NDArray[np.uint32],
-    intrinsics: FloatArray,
-    distortion: tuple[float, ...] = (),
-    sampling: FlowSampling | None = None,
+    field: FlowField, labels: npt.NDArray[np.uint32], camera: PinholeCamera, sampling: FlowSampling | None = None
 ) -> FlowSamples:
-    """Sample `flow` (current to previous, px) where both grey images (H, W) and its `miss` (H, W), px, support it.
+    """Sample a flow field where both of its images support it.
 
     Instances, the non-zero `labels` (H, W), are sampled more finely than the background.
     """
     sampling = sampling or FlowSampling()
-    height, width = current.shape
+    height, width = field.current.shape
     border = sampling.border_px
     stride = max(2, round(width / sampling.samples_a_row))
     grid_y, grid_x = np.mgrid[border : height - border : stride, border : width - border : stride]
@@ -79,24 +73,26 @@ def sample_flow(
     coarse[:: sampling.background_stride, :: sampling.background_stride] = True
     wanted = coarse.ravel() | (labels[y, x] != 0)
 
-    corner_measure = cv2.cornerHarris(current, 7, 3, 0.05)[y, x].astype(np.float64)
+    corner_measure = cv2.cornerHarris(field.current, 7, 3, 0.05)[y, x].astype(np.float64)
     texture = np.sqrt(np.maximum(corner_measure, 0.0))
-    shift = flow[y, x].astype(np.float64)
+    shift = field.flow[y, x].astype(np.float64)
     target = np.column_stack((x, y)) + shift
     inside = np.all((target >= border) & (target <= (width - 1 - border, height - 1 - border)), axis=1)
-    returns = miss[y, x] < sampling.largest_miss_px + sampling.largest_miss_share * np.hypot(shift[:, 0], shift[:, 1])
+    returns = field.miss[y, x] < sampling.largest_miss_px + sampling.largest_miss_share * np.hypot(
+        shift[:, 0], shift[:, 1]
+    )
 
     map_x, map_y = (target[:, axis].astype(np.float32).reshape(grid_x.shape) for axis in (0, 1))
-    was = cv2.remap(cv2.blur(previous, (5, 5)), map_x, map_y, cv2.INTER_LINEAR).ravel()
-    change = np.abs(was.astype(np.float64) - cv2.blur(current, (5, 5))[y, x])
+    was = cv2.remap(cv2.blur(field.previous, (5, 5)), map_x, map_y, cv2.INTER_LINEAR).ravel()
+    change = np.abs(was.astype(np.float64) - cv2.blur(field.current, (5, 5))[y, x])
     kept = wanted & inside & returns & (texture > sampling.least_texture) & (change < sampling.largest_grey_change)
 
     pixel = np.column_stack((x, y))[kept].astype(np.int32)
     return FlowSamples(
         pixel=pixel,
-        current=normalise(pixel.astype(np.float64), intrinsics, distortion),
-        previous=normalise(target[kept], intrinsics, distortion),
+        current=camera.normalise(pixel.astype(np.float64)),
+        previous=camera.normalise(target[kept]),
         flow_px=shift[kept],
         texture=texture[kept],
-        focal_px=float(np.sqrt(intrinsics[0, 0] * intrinsics[1, 1])),
+        focal_px=camera.focal_px,
     )

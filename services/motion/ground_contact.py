@@ -20,7 +20,7 @@ class GroundContact:
 
     def rows_at(self, columns_px: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
         """Rows of the contact at image columns (N,)."""
-        return self.row_px[np.clip(columns_px - self.first_column_px, 0, len(self.row_px) - 1)]
+        return np.asarray(self.row_px[np.clip(columns_px - self.first_column_px, 0, len(self.row_px) - 1)])
 
 
 def find_contact(

@@ -31,7 +31,7 @@ class GroundOptions:
 
 @dataclass(frozen=True)
 class GroundPlane:
-    """normal . X = height in the current camera's optical frame; `height` in baselines, `normal` (3,) unit, downwards."""
+    """normal . X = height in the current camera's optical frame; `height` in baselines, `normal` (3,) unit, down."""
 
     normal: FloatArray
     height: float
@@ -95,7 +95,7 @@ def blend_normal(before: FloatArray | None, now: FloatArray, memory: float) -> F
 
 
 def _near_lane(below: FloatArray, points: FloatArray) -> FloatArray:
-    """Weights 0..1: kerbs, hedges and walls stand beside the lane, and always make the ground look nearer than it is."""
+    """Weights 0..1: kerbs, hedges and walls stand beside the lane, and always make the ground look too near."""
     return np.asarray(np.exp(-0.5 * (points[:, 0] / (1.5 * np.maximum(below, 0.0) + 0.1)) ** 2))
 
 
@@ -133,7 +133,12 @@ def _least_squares(
     scale = parallax.gain * points.focal_px
     below = points.current @ plane[:2] + plane[2]
     off = (parallax.inverse_depth - below) * scale / (options.band_px + options.band_share * below * scale)
-    weight = scale / (1.0 + below * scale / 10.0) * (1.0 - off**2) * _near_lane(below / np.linalg.norm(plane), points.current)
+    weight = (
+        scale
+        / (1.0 + below * scale / 10.0)
+        * (1.0 - off**2)
+        * _near_lane(below / np.linalg.norm(plane), points.current)
+    )
     weight = weight[agrees]
     rows = np.column_stack((points.current[agrees], np.ones(int(agrees.sum())))) * weight[:, None]
     normal_matrix = rows.T @ rows

@@ -19,9 +19,7 @@ class CarriedMasks:
     age_frames: int
 
 
-def carry_masks(
-    before: CarriedMasks, flow: npt.NDArray[np.float32], least_area_px: int = 30
-) -> CarriedMasks:
+def carry_masks(before: CarriedMasks, flow: npt.NDArray[np.float32], least_area_px: int = 30) -> CarriedMasks:
     """The masks `before` as they lie in the current image; `flow` (H, W, 2) px leads from it back to theirs.
 
     A pixel whose flow leads out of the image is background. What has shrunk below `least_area_px` is gone.
@@ -38,9 +36,7 @@ def carry_masks(
         if int(np.count_nonzero(mask)) < least_area_px:
             moved[mask] = 0
             continue
-        kept.append(
-            Instance(instance.instance_id, instance.category, instance.score, bounding_box(mask))
-        )
+        kept.append(Instance(instance.instance_id, instance.category, instance.score, bounding_box(mask)))
     return CarriedMasks(moved, tuple(kept), before.age_frames + 1)
 
 

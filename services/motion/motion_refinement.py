@@ -39,8 +39,8 @@ def refine_rotation(samples: FlowSamples, iterations: int = 6) -> CameraMotion:
 class DirectionPrior:
     """The camera travels along `direction` (3,) give or take `sigma` rad: what decides where the background does not.
 
-    A sparse background at about one depth cannot tell a turn from a step aside. Neighbouring flow vectors err together, so
-    `samples_per_vote` of them weigh as one independent measurement against the prior.
+    A sparse background at about one depth cannot tell a turn from a step aside. Neighbouring flow vectors err together,
+    so `samples_per_vote` of them weigh as one independent measurement against the prior.
     """
 
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
@@ -58,7 +58,7 @@ class DirectionPrior:
 def refine_motion(
     start: CameraMotion, samples: FlowSamples, prior: DirectionPrior, iterations: int = 8
 ) -> CameraMotion:
-    """The rotation and direction that minimise the samples' distances from their epipolar lines, starting at `start`."""
+    """The rotation and direction that minimise the samples' distances from their epipolar lines, from `start` on."""
 
     def moved(motion: CameraMotion, delta: FloatArray, tangent: FloatArray) -> CameraMotion:
         translation = motion.translation + delta[3:] @ tangent
@@ -73,10 +73,10 @@ def refine_motion(
 
         def residuals(delta: FloatArray, at: CameraMotion = motion, tangent: FloatArray = tangent) -> FloatArray:
             parallax = measure_parallax(moved(at, delta, tangent), samples.current, samples.previous)
-            return parallax.across * samples.focal_px / growth
+            return np.asarray(parallax.across * samples.focal_px / growth)
 
         def expected(delta: FloatArray, at: CameraMotion = motion, tangent: FloatArray = tangent) -> FloatArray:
-            return prior.deviation(moved(at, delta, tangent)) * np.sqrt(prior.samples_per_vote)
+            return np.asarray(prior.deviation(moved(at, delta, tangent)) * np.sqrt(prior.samples_per_vote))
 
         step = _robust_step(residuals, 5, expected)
         motion = moved(motion, step, tangent)

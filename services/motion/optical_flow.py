@@ -18,15 +18,29 @@ PRESETS = {
 
 @dataclass(frozen=True)
 class OpticalFlowOptions:
-    """Images wider than `largest_width_px` are halved first; `finest_level` is that of DIS' pyramid (0: the image itself).
+    """Images wider than `largest_width_px` are halved first; `finest_level` is that of DIS' pyramid (0: all pixels).
 
-    Measured on KITTI 03 (1242 px, one thread; median and 90 % distance from the true epipolar line): whole size, level 1
-    36 ms, 0.35 and 1.11 px; halved, level 1 10 ms, 0.39 and 1.29 px; whole size, level 2 11 ms, 0.39 and 1.30 px.
+    Measured on KITTI 03 (1242 px, one thread; median and 90 % distance from the true epipolar line): whole size,
+    level 1 36 ms, 0.35 and 1.11 px; halved, level 1 10 ms, 0.39 and 1.29 px; whole size, level 2 11 ms, 0.39 and 1.30.
     """
 
     preset: str = "fast"
     largest_width_px: int = 800
     finest_level: int = 1
+
+
+@dataclass(frozen=True)
+class FlowField:
+    """Pixel x of `current` was at x + `flow`[x] in `previous`; grey uint8 (H, W) images, float32 (H, W, 2) flow in px.
+
+    `miss`, float32 (H, W) px, is how far from x the flow of `previous` to `current` ends that starts there: large where
+    one of the two is wrong (hidden there, no texture).
+    """
+
+    current: npt.NDArray[np.uint8]
+    previous: npt.NDArray[np.uint8]
+    flow: npt.NDArray[np.float32]
+    miss: npt.NDArray[np.float32]
 
 
 class DenseFlow:
@@ -46,29 +60,34 @@ class DenseFlow:
         self._check = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
         self._check.setFinestScale(self._options.finest_level)
 
-    def previous_from_current(
-        self, current: npt.NDArray[np.uint8], previous: npt.NDArray[np.uint8]
-    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        """Flow in px, float32 (H, W, 2), and how far it misses its way back in px, float32 (H, W).
-
-        Pixel x of the grey image (H, W) `current` was at x + flow[x] in `previous`; the flow of `previous` to `current`
-        ends where it began unless one of the two is wrong (hidden there, no texture). Raise InputError when the sizes differ.
-        """
+    def previous_from_current(self, current: npt.NDArray[np.uint8], previous: npt.NDArray[np.uint8]) -> FlowField:
+        """The flow between two grey images (H, W). Raise InputError when they differ in size."""
         if current.shape != previous.shape:
             raise InputError(f"images of {previous.shape} and {current.shape}: expected two of the same size")
         height, width = current.shape
         shrink = 2 ** max(0, int(np.ceil(np.log2(width / self._options.largest_width_px))))
         size = (width // shrink, height // shrink)
+        now, before = current, previous
         if shrink > 1:
-            current = np.asarray(cv2.resize(current, size, interpolation=cv2.INTER_AREA), np.uint8)
-            previous = np.asarray(cv2.resize(previous, size, interpolation=cv2.INTER_AREA), np.uint8)
-        flow = self._algorithm.calc(current, previous, None)
-        back = self._check.calc(previous, current, None)
+            now, before = _resized(current, size), _resized(previous, size)
+        flow = _calculate(self._algorithm, now, before)
+        back = _calculate(self._check, before, now)
         columns, rows = np.meshgrid(np.arange(size[0], dtype=np.float32), np.arange(size[1], dtype=np.float32))
-        returned = cv2.remap(back, columns + flow[..., 0], rows + flow[..., 1], cv2.INTER_LINEAR)
-        returned += flow
-        miss = np.hypot(returned[..., 0], returned[..., 1])
+        returned = flow + cv2.remap(back, columns + flow[..., 0], rows + flow[..., 1], cv2.INTER_LINEAR)
+        miss = np.hypot(returned[..., 0], returned[..., 1]).astype(np.float32)
         if shrink > 1:
-            flow = cv2.resize(flow, (width, height)) * np.float32([width / size[0], height / size[1]])
-            miss = cv2.resize(miss, (width, height)) * np.float32(shrink)
-        return np.asarray(flow, dtype=np.float32), np.asarray(miss, dtype=np.float32)
+            scale = np.array([width / size[0], height / size[1]], np.float32)
+            flow = np.asarray(cv2.resize(flow, (width, height)) * scale, np.float32)
+            miss = np.asarray(cv2.resize(miss, (width, height)) * np.float32(shrink), np.float32)
+        return FlowField(current, previous, flow, miss)
+
+
+def _resized(image: npt.NDArray[np.uint8], size: tuple[int, int]) -> npt.NDArray[np.uint8]:
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _calculate(
+    algorithm: cv2.DISOpticalFlow, start: npt.NDArray[np.uint8], end: npt.NDArray[np.uint8]
+) -> npt.NDArray[np.float32]:
+    flow = algorithm.calc(start, end, None)  # type: ignore[call-overload]  # the stubs do not know "no first guess"
+    return np.asarray(flow, np.float32)

@@ -28,7 +28,7 @@ from services.motion.instance_motion import (
 )
 from services.motion.mask_carrier import CarriedMasks, bounding_box, carry_masks
 from services.motion.optical_flow import DenseFlow, OpticalFlowOptions
-from services.motion.two_view import CameraMotion, FloatArray
+from services.motion.two_view import CameraMotion, FloatArray, PinholeCamera
 from services.runtime.errors import InputError
 
 
@@ -89,27 +89,21 @@ class SceneMotion:
         if before is None or before.grey.shape != grey.shape:
             return self._first(image, grey, segmented)
 
-        flow, miss = self._flow.previous_from_current(grey, before.grey)
-        masks = carry_masks(before.masks, flow) if segmented.skipped else _fresh(segmented)
-        intrinsics = np.asarray(calibration.intrinsics, dtype=np.float64)
-        distortion = calibration.distortion
-        samples = sample_flow(
-            grey, before.grey, flow, miss, masks.labels, intrinsics, distortion, self._options.sampling
-        )
+        field = self._flow.previous_from_current(grey, before.grey)
+        masks = carry_masks(before.masks, field.flow) if segmented.skipped else _fresh(segmented)
+        camera = PinholeCamera(np.asarray(calibration.intrinsics, dtype=np.float64), calibration.distortion)
+        samples = sample_flow(field, masks.labels, camera, self._options.sampling)
         background = self._background(samples, masks)
         ego = self._ego.estimate(samples, background, before.motion)
         ground = None
         if ego.motion is not None:
             ground = fit_ground(samples, background, ego.motion, before.ground_normal, self._options.ground)
-        estimator = InstanceMotionEstimator(samples, background, ego, ground, self._options.instance)
+        estimator = InstanceMotionEstimator(
+            samples, background, ego, ground=ground, camera=camera, options=self._options.instance
+        )
         evidence = {
             instance.instance_id: estimator.assess(
-                masks.labels,
-                instance.instance_id,
-                _whole_box(instance, grey.shape),
-                intrinsics,
-                distortion,
-                instance.category,
+                masks.labels, instance.instance_id, instance.category, _whole_box(instance, grey.shape)
             )
             for instance in masks.instances
         }
@@ -117,17 +111,15 @@ class SceneMotion:
         if ground is not None:
             normal = blend_normal(normal, ground.normal, self._options.ground.normal_memory)
         self.state = SceneMotionState(image.timestamp_ns, grey, masks, ego.motion, normal)
-        return _result(image.timestamp_ns, before.timestamp_ns, masks, ego, evidence, ground)
+        return _result(image.timestamp_ns, before.timestamp_ns, masks=masks, ego=ego, evidence=evidence, ground=ground)
 
-    def _first(
-        self, image: Image, grey: npt.NDArray[np.uint8], segmented: Instances
-    ) -> SceneMotionResult:
+    def _first(self, image: Image, grey: npt.NDArray[np.uint8], segmented: Instances) -> SceneMotionResult:
         reason = "first image" if self.state is None else "image of another size than the one before"
         masks = CarriedMasks(np.zeros(grey.shape, np.uint32), (), 0) if segmented.skipped else _fresh(segmented)
         self.state = SceneMotionState(image.timestamp_ns, grey, masks, None, None)
         ego = EgoMotionEstimate(None, reason)
         evidence = {instance.instance_id: NO_EVIDENCE for instance in masks.instances}
-        return _result(image.timestamp_ns, image.timestamp_ns, masks, ego, evidence, None)
+        return _result(image.timestamp_ns, image.timestamp_ns, masks=masks, ego=ego, evidence=evidence, ground=None)
 
     def _background(self, samples: FlowSamples, masks: CarriedMasks) -> npt.NDArray[np.bool_]:
         side = 2 * self._options.mask_margin_px + 1
@@ -136,7 +128,7 @@ class SceneMotion:
 
 
 def _fresh(segmented: Instances) -> CarriedMasks:
-    """The segmenter's masks, with the box of the pixels that each really has; instances without any pixel are left out."""
+    """The segmenter's masks, each with the box of its pixels; instances without any pixel are left out."""
     present = []
     for instance in segmented.instances:
         mask = segmented.labels == instance.instance_id
@@ -153,6 +145,7 @@ def _whole_box(instance: Instance, shape: tuple[int, ...]) -> tuple[int, int, in
 def _result(
     timestamp_ns: int,
     previous_timestamp_ns: int,
+    *,
     masks: CarriedMasks,
     ego: EgoMotionEstimate,
     evidence: dict[int, MotionEvidence],

@@ -12,6 +12,7 @@ from services.motion.instance_motion import InstanceMotionOptions
 from services.motion.motion_refinement import DirectionPrior
 from services.motion.optical_flow import OpticalFlowOptions
 from services.motion.scene_motion import SceneMotion, SceneMotionOptions
+from services.motion.standing_flow import StandingFlowOptions
 from services.motion.state_arrays import arrays_of_state, state_of_arrays
 from services.runtime.config import Config
 from services.runtime.config.motion import MotionConfig
@@ -33,9 +34,8 @@ def scene_motion_options(settings: MotionConfig) -> SceneMotionOptions:
             prior=DirectionPrior(sigma=settings.heading_sigma),
         ),
         instance=InstanceMotionOptions(
-            contact_error_px=settings.contact_error_px,
-            depth_error=settings.depth_error,
             expected_speed=settings.expected_speed,
+            standing=StandingFlowOptions(settings.contact_error_px, settings.depth_error),
         ),
     )
 

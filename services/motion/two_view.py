@@ -11,10 +11,32 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class PinholeCamera:
+    """`intrinsics` (3, 3) in px and OpenCV's `distortion` (k1, k2, p1, p2, k3, or none)."""
+
+    intrinsics: FloatArray
+    distortion: tuple[float, ...] = ()
+
+    @property
+    def focal_px(self) -> float:
+        """The mean focal length."""
+        return float(np.sqrt(self.intrinsics[0, 0] * self.intrinsics[1, 1]))
+
+    def normalise(self, pixels: npt.NDArray[np.floating]) -> FloatArray:
+        """Normalised, undistorted image coordinates (N, 2) of `pixels` (N, 2)."""
+        if any(self.distortion):
+            points = np.ascontiguousarray(pixels, dtype=np.float64).reshape(-1, 1, 2)
+            undistorted = cv2.undistortPoints(points, self.intrinsics, np.array(self.distortion))
+            return np.asarray(undistorted.reshape(-1, 2), dtype=np.float64)
+        focal = np.array([self.intrinsics[0, 0], self.intrinsics[1, 1]])
+        return np.asarray((pixels - self.intrinsics[:2, 2]) / focal, dtype=np.float64)
+
+
+@dataclass(frozen=True)
 class CameraMotion:
     """X_previous = rotation @ X_current + translation, camera optical frames.
 
-    `translation` has unit length (the scale of two views is arbitrary), or is zero where the camera only turned or stood.
+    `translation` has unit length (the scale of two views is arbitrary), or is zero where the camera only turned.
     """
 
     rotation: FloatArray
@@ -28,7 +50,7 @@ class CameraMotion:
 
 @dataclass(frozen=True)
 class Parallax:
-    """Displacements, as (N,) in normalised image coordinates, of points against where pure rotation would have put them.
+    """Displacements (N,), in normalised image coordinates, of points from where pure rotation would have put them.
 
     `along` and `across` are its parts along the epipolar line (positive: as a point in front of the camera moves) and
     across it. `inverse_depth` is that of the point in the current camera, 1 / baseline: it is `along` explained by a
@@ -72,15 +94,6 @@ def predict_along(motion: CameraMotion, current: FloatArray, inverse_depth: Floa
     start = rotated[:, :2] / rotated[:, 2:]
     end = moved[:, :2] / np.maximum(moved[:, 2:], 1e-3)
     return np.asarray(np.hypot(*(end - start).T) * np.sign(inverse_depth))
-
-
-def normalise(pixels: npt.NDArray[np.floating], intrinsics: FloatArray, distortion: tuple[float, ...]) -> FloatArray:
-    """Normalised, undistorted image coordinates (N, 2) of `pixels` (N, 2)."""
-    if distortion and any(distortion):
-        points = np.ascontiguousarray(pixels, dtype=np.float64).reshape(-1, 1, 2)
-        return np.asarray(cv2.undistortPoints(points, intrinsics, np.array(distortion)).reshape(-1, 2))
-    focal = np.array([intrinsics[0, 0], intrinsics[1, 1]])
-    return np.asarray((pixels - intrinsics[:2, 2]) / focal, dtype=np.float64)
 
 
 def rotation_from_vector(vector: FloatArray) -> FloatArray:

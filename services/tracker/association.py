@@ -20,7 +20,7 @@ class AssociationOptions:
 
     least_iou: float = 0.15
     largest_distance: float = 1.0
-    """between centres, in the larger box's mean side, where the masks do not overlap (a thin person, a low frame rate)"""
+    """between centres, in the larger box's mean side, where the masks do not overlap (thin people, few frames)"""
     distance_slack_px: float = 4.0
     """more that the smallest objects may jump"""
     largest_size_ratio: float = 1.6
@@ -87,19 +87,15 @@ def _overlap(before: Candidate, now: Candidate, options: AssociationOptions) -> 
 
 def _apart(first: MaskPatch, second: MaskPatch) -> bool:
     (first_height, first_width), (second_height, second_width) = first.mask.shape, second.mask.shape
-    return (
-        first.x >= second.x + second_width
-        or second.x >= first.x + first_width
-        or first.y >= second.y + second_height
-        or second.y >= first.y + first_height
-    )
+    aside = first.x >= second.x + second_width or second.x >= first.x + first_width
+    return bool(aside or first.y >= second.y + second_height or second.y >= first.y + first_height)
 
 
 def _nearness(before: Candidate, now: Candidate, options: AssociationOptions) -> float:
     sides = [np.sqrt(max(1.0, box[2] * box[3])) for box in (before.box_px, now.box_px)]
     if max(sides) > options.largest_size_ratio * min(sides):
         return 0.0
-    away = np.hypot(*(_centre(now.box_px) - _centre(before.box_px)))  / (
+    away = np.hypot(*(_centre(now.box_px) - _centre(before.box_px))) / (
         options.largest_distance * max(sides) + options.distance_slack_px
     )
     return float(max(0.0, 1.0 - away))

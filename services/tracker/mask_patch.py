@@ -13,7 +13,7 @@ BoxPx = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class MaskPatch:
-    """A boolean mask (height, width) whose upper left pixel lies at column `x`, row `y` of the image (or outside it)."""
+    """A boolean mask (height, width) whose upper left pixel lies at column `x`, row `y`, in the image or outside it."""
 
     x: int
     y: int

@@ -13,7 +13,7 @@ Arrays = dict[str, npt.NDArray[np.generic]]
 
 
 def arrays_of_objects(objects: tuple[TrackedObject, ...], next_id: int) -> Arrays:
-    """Arrays that `objects_of_arrays` makes the same objects of. Masks lie one behind the other, eight pixels a byte."""
+    """Arrays that `objects_of_arrays` makes the same objects of. Masks lie one behind the other, a bit a pixel."""
     scores = [
         (row, category, score) for row, known in enumerate(objects) for category, score in known.category_scores.items()
     ]

@@ -5,9 +5,7 @@ import numpy as np
 import numpy.typing as npt
 
 
-def draw_track_image(
-    labels: npt.NDArray[np.uint32], object_of_instance: dict[int, int]
-) -> npt.NDArray[np.uint32]:
+def draw_track_image(labels: npt.NDArray[np.uint32], object_of_instance: dict[int, int]) -> npt.NDArray[np.uint32]:
     """uint32 (H, W): the object id of each labelled pixel, 0 for background and for instances that are no object."""
     if not object_of_instance:
         return np.zeros(labels.shape, dtype=np.uint32)

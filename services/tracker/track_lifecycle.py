@@ -47,7 +47,7 @@ class TrackedObject:
         return max(sorted(self.category_scores), key=lambda name: self.category_scores[name])
 
     def predicted_box(self) -> BoxPx:
-        """Where its box should be one frame after the last one looked at. An object out of sight is thought to slow down."""
+        """Where its box should be in the next frame. An object out of sight is thought to slow down."""
         x, y, width, height = self.box_px
         frames = float(np.sum(0.8 ** np.arange(self.unseen_frames + 1)))
         factor = float(np.clip(self.growth**frames, 0.5, 2.0))
@@ -125,7 +125,10 @@ class ObjectTracker:
         frames = known.unseen_frames + 1
         x, y, width, height = known.box_px
         now_x, now_y, now_width, now_height = instance.box_px
-        moved = ((now_x + 0.5 * now_width - x - 0.5 * width) / frames, (now_y + 0.5 * now_height - y - 0.5 * height) / frames)
+        moved = (
+            (now_x + 0.5 * now_width - x - 0.5 * width) / frames,
+            (now_y + 0.5 * now_height - y - 0.5 * height) / frames,
+        )
         grown = float(np.clip(np.sqrt(now_width * now_height / (width * height)), 0.5, 2.0)) ** (1.0 / frames)
         memory = self._options.velocity_memory if known.observed_frames > 1 else 0.0
         scores = dict(known.category_scores)

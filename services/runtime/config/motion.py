@@ -29,6 +29,6 @@ class MotionConfig(BaseModel):
     )
     contact_error_px: float = Field(0.8, gt=0, description="error of the lower edge of a mask")
     depth_error: float = Field(
-        0.045, gt=0, description="error of an object's depth against that of its contact with the ground, as a share"
+        0.06, gt=0, description="error of an object's depth against that of its contact with the ground, as a share"
     )
     expected_speed: float = Field(0.25, gt=0, description="of what moves, in the camera's own speed")

@@ -7,10 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 from services.motion.flow_samples import FlowSamples
-from services.motion.two_view import CameraMotion, FloatArray, normalise, rotation_from_vector
+from services.motion.two_view import CameraMotion, FloatArray, PinholeCamera, rotation_from_vector
 
 WIDTH, HEIGHT, FOCAL_PX = 640, 192, 380.0
 INTRINSICS = np.array([[FOCAL_PX, 0.0, 320.0], [0.0, FOCAL_PX, 80.0], [0.0, 0.0, 1.0]])
+CAMERA = PinholeCamera(INTRINSICS)
 CAMERA_HEIGHT_M = 1.65
 WALL_M = 9.0
 
@@ -47,7 +48,7 @@ class Scene:
 
 
 def camera_motion(baseline_m: float, yaw_rad: float = 0.0, pitch_rad: float = 0.0) -> tuple[CameraMotion, FloatArray]:
-    """previous_from_current of a camera that drove ahead, with unit translation (or none), and its translation in metres."""
+    """previous_from_current of a camera that drove ahead, translation of unit length (or none), and that in metres."""
     rotation = rotation_from_vector(np.array([pitch_rad, yaw_rad, 0.0]))
     translation_m = rotation @ np.array([0.0, 0.0, baseline_m])
     unit = translation_m / baseline_m if baseline_m else np.zeros(3)
@@ -58,6 +59,7 @@ def make_scene(
     motion: CameraMotion,
     translation_m: FloatArray,
     cars: tuple[Car, ...] = (),
+    *,
     noise_px: float = 0.1,
     outlier_share: float = 0.0,
     seed: int = 1,
@@ -65,7 +67,7 @@ def make_scene(
     """Samples at every fourth pixel whose flow is exact but for Gaussian noise and a share of random outliers."""
     rows, columns = np.mgrid[2:HEIGHT:4, 2:WIDTH:4]
     pixel = np.column_stack((columns.ravel(), rows.ravel())).astype(np.int32)
-    current = normalise(pixel.astype(np.float64), INTRINSICS, ())
+    current = CAMERA.normalise(pixel.astype(np.float64))
     depth = np.full(len(pixel), 60.0)
     below = current[:, 1] > 1e-6
     depth[below] = np.minimum(depth[below], CAMERA_HEIGHT_M / current[below, 1])
@@ -91,7 +93,7 @@ def make_scene(
     samples = FlowSamples(
         pixel[inside],
         current[inside],
-        normalise(was[inside], INTRINSICS, ()),
+        CAMERA.normalise(was[inside]),
         (was - pixel)[inside],
         random.uniform(1.0, 2.0, len(pixel))[inside],
         FOCAL_PX,

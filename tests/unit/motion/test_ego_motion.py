@@ -25,11 +25,13 @@ def estimate(scene: Scene, before: CameraMotion | None = None):
 def test_driving_ahead_with_a_quarter_of_outliers(yaw: float, pitch: float) -> None:
     truth, translation_m = camera_motion(0.8, yaw, pitch)
     found = estimate(make_scene(truth, translation_m, noise_px=0.15, outlier_share=0.25))
-    assert found.motion is not None and found.reason == ""
+    assert found.motion is not None
+    assert found.reason == ""
     assert rotation_error_deg(found.motion.rotation, truth.rotation) < 0.05
     assert direction_error_deg(found.motion.translation, truth.translation) < 1.0
     assert np.linalg.norm(found.motion.translation) == pytest.approx(1.0)
-    assert 0.6 < found.inlier_ratio < 0.9 and found.samples > 200
+    assert 0.6 < found.inlier_ratio < 0.9
+    assert found.samples > 200
     assert found.parallax_px > 3.0
 
 
@@ -44,7 +46,8 @@ def test_a_camera_that_steps_aside_is_not_taken_for_one_that_turns() -> None:
 def test_a_pure_turn_has_no_baseline() -> None:
     truth, translation_m = camera_motion(0.0, yaw_rad=0.03)
     found = estimate(make_scene(truth, translation_m, noise_px=0.1, outlier_share=0.05))
-    assert found.motion is not None and not found.motion.has_baseline
+    assert found.motion is not None
+    assert not found.motion.has_baseline
     assert found.reason == "no baseline"
     assert rotation_error_deg(found.motion.rotation, truth.rotation) < 0.02
     assert found.background_flow_px > 5.0
@@ -54,7 +57,8 @@ def test_a_standing_camera_stands_though_cars_pass() -> None:
     truth, translation_m = camera_motion(0.0)
     car = Car(1, -2.0, 9.0, (0.6, 0.0, 0.0), width_m=4.0)
     found = estimate(make_scene(truth, translation_m, (car,), noise_px=0.05))
-    assert found.motion is not None and not found.motion.has_baseline
+    assert found.motion is not None
+    assert not found.motion.has_baseline
     assert found.parallax_px < 0.35
 
 
@@ -88,6 +92,7 @@ def test_the_same_samples_give_the_same_motion() -> None:
     truth, translation_m = camera_motion(0.8, 0.01)
     scene = make_scene(truth, translation_m, outlier_share=0.3)
     first, second = estimate(scene), estimate(scene)
-    assert first.motion is not None and second.motion is not None
+    assert first.motion is not None
+    assert second.motion is not None
     assert first.motion.rotation.tobytes() == second.motion.rotation.tobytes()
     assert first.motion.translation.tobytes() == second.motion.translation.tobytes()

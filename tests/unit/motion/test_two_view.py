@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from services.motion.two_view import CameraMotion, measure_parallax, normalise, predict_along, rotation_from_vector
+from services.motion.two_view import CameraMotion, PinholeCamera, measure_parallax, predict_along, rotation_from_vector
 
 finite = st.floats(-0.05, 0.05)
 
@@ -60,5 +60,7 @@ def test_normalise_takes_distortion_out():
     straight, k1 = np.array([[0.4, 0.2]]), -0.2
     bent = straight * (1.0 + k1 * np.sum(straight**2))
     pixels = bent * 400.0 + intrinsics[:2, 2]
-    np.testing.assert_allclose(normalise(pixels, intrinsics, (k1, 0.0, 0.0, 0.0, 0.0)), straight, atol=1e-4)
-    np.testing.assert_allclose(normalise(pixels, intrinsics, ()), bent, atol=1e-12)
+    np.testing.assert_allclose(
+        PinholeCamera(intrinsics, (k1, 0.0, 0.0, 0.0, 0.0)).normalise(pixels), straight, atol=1e-4
+    )
+    np.testing.assert_allclose(PinholeCamera(intrinsics).normalise(pixels), bent, atol=1e-12)
