@@ -67,7 +67,7 @@ $(VENV)/engine.stamp: $(VENV)/python.stamp $(ENGINE_SOURCES)
 		-DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -Dpybind11_DIR=$$($(BIN)/python -m pybind11 --cmakedir) >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) | tail -n 1
 	@cmake --install $(BUILD) --component engine --prefix . >/dev/null
-	@$(BIN)/pip --disable-pip-version-check install --quiet --no-deps --no-build-isolation \
+	@$(BIN)/pip --disable-pip-version-check install -qq --no-deps --no-build-isolation \
 		-C wheel.cmake=false -C editable.mode=inplace --editable .
 	@touch $@
 

@@ -5,7 +5,7 @@
 set -euo pipefail
 venv="$1"
 root="$(cd "$(dirname "$0")/../.." && pwd)"
-pip=("$venv/bin/pip" --disable-pip-version-check install --quiet)
+pip=("$venv/bin/pip" --disable-pip-version-check install -qq)
 torch=2.13.0
 
 if "$venv/bin/python" -c "import torch, sys; sys.exit(torch.__version__.split('+')[0] != '$torch')" 2>/dev/null; then
