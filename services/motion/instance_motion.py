@@ -26,10 +26,10 @@ class InstanceMotionOptions:
     least_samples: int = 5
     few_samples: int = 16
     """at so many samples the flow's noise counts 1.4 times: they lie at edges, or between things that hide the rest"""
-    flow_noise: float = 1.2
+    flow_noise: float = 0.9
     """of an instance's median flow, in the noise of one background sample: neighbouring flow vectors err together"""
     least_noise_px: float = 0.1
-    direction_error: float = 0.012
+    direction_error: float = 0.008
     """rad, of the camera's direction of travel: across the epipolar line in shares of the parallax"""
     expected_speed: float = 0.25
     """of what moves, in the camera's own speed"""

@@ -80,7 +80,7 @@ def refine_motion(
 
         step = _robust_step(residuals, 5, expected)
         motion = moved(motion, step, tangent)
-        if float(np.abs(step).max()) < 1e-6:
+        if float(np.abs(step).max()) < 2e-5:  # less than a hundredth of a pixel
             break
     return motion
 

@@ -41,7 +41,7 @@ def test_a_patch_is_cut_out_and_stretched() -> None:
 
 
 def test_the_best_sum_wins_over_the_best_pair() -> None:
-    # greedy would give the second of before its best, 0.67 of the first found, and leave the first of before with nothing
+    # greedily the second would get its best (IoU 0.67), and the first of before would be left with nothing
     before = [candidate(0, 0), candidate(10, 0)]
     found = [candidate(6, 0), candidate(20, 0)]
     assert associate(before, found) == [(0, 0), (1, 1)]
