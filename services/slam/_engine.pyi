@@ -112,6 +112,6 @@ class Engine:
     ) -> TrackingResult:
         """Track and map the begun frame. RuntimeError when none was begun, ValueError for arrays that do not fit."""
     def flush(self) -> None:
-        """The end of the input: merge the background's work and adjust once more."""
+        """The end of the input: merge the background's work and adjust the whole map once more; takes seconds."""
     def take_map_update(self) -> dict[str, npt.NDArray[Any]]:
         """What changed since the last call, keyed like schemas.records.slam.MapUpdate's arrays."""

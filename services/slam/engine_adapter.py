@@ -80,7 +80,7 @@ class SlamEngine:
         return self._tracked_frame(result, masks)
 
     def flush(self) -> None:
-        """End the input: merge the background's work and adjust the newest surroundings once more."""
+        """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
         self._engine.flush()
 
     def take_map_update(self, timestamp_ns: int) -> MapUpdate:

@@ -42,7 +42,7 @@ class Engine {
   /// no frame was begun, std::invalid_argument for images of another size.
   TrackingResult FinishFrame(const FrameObjects& objects, const cv::Mat& depth_m);
 
-  /// The end of the input: merges the background's work and adjusts the newest surroundings once more.
+  /// The end of the input: merges the background's work and adjusts the whole map (its newest 300 keyframes) once more.
   void Flush();
 
   /// Everything that changed since the last call.

@@ -2,7 +2,6 @@
 #include "mapping/local_bundle_adjuster.h"
 
 #include <map>
-#include <set>
 
 namespace kinemap {
 
@@ -11,6 +10,10 @@ BundleProblem LocalBundleAdjuster::CopyProblem(const SlamMap& map, KeyframeId ke
   for (const KeyframeId id : map.covisibility().Neighbors(keyframe_id, options_.keyframes - 1, options_.min_shared)) {
     moving.insert(id);
   }
+  return CopyProblem(map, moving);
+}
+
+BundleProblem LocalBundleAdjuster::CopyProblem(const SlamMap& map, const std::set<KeyframeId>& moving) {
   std::set<LandmarkId> landmarks;
   for (const KeyframeId id : moving) {
     for (const LandmarkId landmark_id : map.keyframe(id).landmark_ids) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
+
 #include "geometry/camera_model.h"
 #include "map/slam_map.h"
 #include "optimization/bundle_adjustment.h"
@@ -21,6 +23,9 @@ class LocalBundleAdjuster {
 
   /// Moving: the keyframe and its neighbours. Fixed: the first keyframe and all others that see the same landmarks.
   BundleProblem CopyProblem(const SlamMap& map, KeyframeId keyframe_id) const;
+
+  /// The same with the moving keyframes given.
+  static BundleProblem CopyProblem(const SlamMap& map, const std::set<KeyframeId>& moving);
 
   /// Moves keyframes and landmarks that still exist and erases the observations marked as outliers.
   static void WriteBack(const BundleProblem& solved, SlamMap* map);

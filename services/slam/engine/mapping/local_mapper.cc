@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/local_mapper.h"
 
+#include <algorithm>
+#include <set>
+
 namespace kinemap {
 
 LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& camera)
@@ -37,8 +40,12 @@ void LocalMapper::Merge(SlamMap* map) {
 void LocalMapper::Finish(SlamMap* map) {
   if (!slot_.IsFree()) Merge(map);
   if (newest_ == kNoId) return;
-  slot_.Start(bundle_adjuster_.CopyProblem(*map, newest_), 0);
-  Merge(map);
+  const std::vector<KeyframeId> live = map->LiveKeyframes();
+  const size_t left_out = live.size() - std::min(live.size(), static_cast<size_t>(options_.final_keyframes));
+  BundleProblem problem =
+      LocalBundleAdjuster::CopyProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
+  SolveBundle(camera_, options_.final_bundle, &problem);
+  LocalBundleAdjuster::WriteBack(problem, map);
 }
 
 }  // namespace kinemap

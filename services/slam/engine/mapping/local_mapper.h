@@ -18,6 +18,9 @@ struct LocalMapperOptions {
   FuserOptions fuser;
   LocalBundleOptions bundle;
   int merge_delay_frames = 2;  ///< bundle adjustment of the keyframe at frame k is merged at frame k + this
+  int final_keyframes = 300;   ///< newest keyframes that take part in the adjustment at the end of the input
+  /// Errors that a local window leaves behind bend the map only little a frame, so the end needs a finer tolerance.
+  BundleOptions final_bundle{20, 20, 1e-8};
 };
 
 /// Everything that happens around a keyframe: culling, triangulation and fusion at once, bundle adjustment in the
@@ -34,7 +37,7 @@ class LocalMapper {
   /// Merges the background's solution when its frame has come, and culls redundant keyframes.
   void MergeIfDue(SlamMap* map, int64_t frame_index);
 
-  /// Merges what is pending, whatever frame it is due, and adjusts the newest keyframe's surroundings once more.
+  /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more.
   void Finish(SlamMap* map);
 
  private:

@@ -18,7 +18,7 @@ constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of 
 
 using PoseBlock = std::array<double, kPoseSize>;
 
-void Solve(const CameraModel& camera, bool robust, int iterations, BundleProblem* bundle) {
+void Solve(const CameraModel& camera, bool robust, int iterations, double tolerance, BundleProblem* bundle) {
   std::vector<PoseBlock> poses(bundle->cameras.size());
   for (size_t i = 0; i < poses.size(); ++i) WritePose(bundle->cameras[i].camera_from_map, poses[i].data());
 
@@ -60,7 +60,7 @@ void Solve(const CameraModel& camera, bool robust, int iterations, BundleProblem
   options.linear_solver_ordering = ordering;
   options.max_num_iterations = iterations;
   options.num_threads = 1;
-  options.function_tolerance = 1e-5;
+  options.function_tolerance = tolerance;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
@@ -81,10 +81,10 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
 }  // namespace
 
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem) {
-  Solve(camera, true, options.robust_iterations, problem);
+  Solve(camera, true, options.robust_iterations, options.tolerance, problem);
   MarkOutliers(camera, problem);
   if (options.final_iterations == 0) return;
-  Solve(camera, false, options.final_iterations, problem);
+  Solve(camera, false, options.final_iterations, options.tolerance, problem);
   MarkOutliers(camera, problem);
 }
 

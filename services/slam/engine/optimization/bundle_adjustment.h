@@ -39,6 +39,7 @@ struct BundleProblem {
 struct BundleOptions {
   int robust_iterations = 5;  ///< with Huber's loss, before outliers are left out
   int final_iterations = 5;   ///< quadratic, over the rest
+  double tolerance = 1e-5;    ///< ends when an iteration lowers the cost by less than this part of it
 };
 
 /// Minimises the reprojection error over the cameras that are not fixed and all points, in place, and marks the

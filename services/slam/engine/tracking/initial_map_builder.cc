@@ -6,7 +6,7 @@
 
 namespace kinemap {
 namespace {
-constexpr BundleOptions kInitialBundle{10, 10};
+constexpr BundleOptions kInitialBundle{10, 10, 1e-6};
 constexpr int kLeastTracked = 50;
 }  // namespace
 

@@ -159,7 +159,7 @@ TEST(LocalBundleAdjuster, BringsADisturbedKeyframeBack) {
   for (const BundleCamera& camera : problem.cameras) moving += camera.fixed ? 0 : 1;
   EXPECT_EQ(moving, 3);
   EXPECT_EQ(problem.cameras.size(), 5u);
-  SolveBundle(TestCamera(), {10, 10}, &problem);
+  SolveBundle(TestCamera(), {10, 10, 1e-8}, &problem);
   LocalBundleAdjuster::WriteBack(problem, &map);
   EXPECT_LT((map.MapFromKeyframe(4).translation - truth.translation).norm(), 1e-3);
 }

@@ -145,7 +145,7 @@ class Bundle : public ::testing::Test {
 
 TEST_F(Bundle, FindsCamerasAndPointsAgain) {
   Disturb();
-  SolveBundle(TestCamera(), {10, 20}, &problem_);
+  SolveBundle(TestCamera(), {10, 20, 1e-8}, &problem_);
   for (int k = 0; k < 5; ++k) {
     EXPECT_LT((problem_.cameras[k].camera_from_map.Matrix() - truth_[k].Matrix()).norm(), 1e-4) << "camera " << k;
   }
@@ -157,7 +157,7 @@ TEST_F(Bundle, FindsCamerasAndPointsAgain) {
 TEST_F(Bundle, LeavesOutWrongObservationsAndFixedCameras) {
   Disturb();
   for (size_t i = 0; i < problem_.observations.size(); i += 20) problem_.observations[i].pixel_px.x() += 30;
-  SolveBundle(TestCamera(), {10, 20}, &problem_);
+  SolveBundle(TestCamera(), {10, 20, 1e-8}, &problem_);
   for (size_t i = 0; i < problem_.observations.size(); ++i) {
     EXPECT_EQ(problem_.observations[i].outlier, i % 20 == 0) << i;
   }
@@ -168,8 +168,8 @@ TEST_F(Bundle, LeavesOutWrongObservationsAndFixedCameras) {
 TEST_F(Bundle, OneProblemGivesOneSolution) {
   Disturb();
   BundleProblem again = problem_;
-  SolveBundle(TestCamera(), {5, 5}, &problem_);
-  SolveBundle(TestCamera(), {5, 5}, &again);
+  SolveBundle(TestCamera(), {5, 5, 1e-5}, &problem_);
+  SolveBundle(TestCamera(), {5, 5, 1e-5}, &again);
   for (size_t i = 0; i < problem_.points.size(); ++i) {
     EXPECT_EQ(problem_.points[i].position_in_map, again.points[i].position_in_map);
   }
