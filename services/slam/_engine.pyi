@@ -49,6 +49,7 @@ class EngineOptions:
     seed: int  # 0
     merge_delay_frames: int  # 2: bundle adjustment of keyframe k is merged at frame k + 2
     local_bundle_keyframes: int  # 15 that move
+    radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     map_from_first_camera: npt.NDArray[np.float64]  # (4, 4), identity
@@ -113,5 +114,8 @@ class Engine:
         """Track and map the begun frame. RuntimeError when none was begun, ValueError for arrays that do not fit."""
     def flush(self) -> None:
         """The end of the input: merge the background's work and adjust the whole map once more; takes seconds."""
+    @property
+    def remaining_radial(self) -> float:
+        """Radial distortion k that flush() found on top of the calibration (pixel = project(point (1 + k r^2)))."""
     def take_map_update(self) -> dict[str, npt.NDArray[Any]]:
         """What changed since the last call, keyed like schemas.records.slam.MapUpdate's arrays."""

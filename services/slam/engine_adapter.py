@@ -35,6 +35,7 @@ class EngineSettings:
     seed: int = 0
     merge_delay_frames: int = 2
     local_bundle_keyframes: int = 15
+    radial_sigma: float = 0.01
     opencv_threads: int = 1
     map_id: int = 0
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
@@ -82,6 +83,11 @@ class SlamEngine:
     def flush(self) -> None:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
         self._engine.flush()
+
+    @property
+    def remaining_radial(self) -> float:
+        """Radial distortion that `flush` found on top of the calibration; 0 before, and where calibration is exact."""
+        return self._engine.remaining_radial
 
     def take_map_update(self, timestamp_ns: int) -> MapUpdate:
         """Everything of the map that changed since the last call, under the time of the newest frame."""
@@ -150,6 +156,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.seed = settings.seed
     options.merge_delay_frames = settings.merge_delay_frames
     options.local_bundle_keyframes = settings.local_bundle_keyframes
+    options.radial_sigma = settings.radial_sigma
     options.opencv_threads = settings.opencv_threads
     options.map_id = settings.map_id
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)

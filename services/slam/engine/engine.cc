@@ -34,6 +34,7 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   LocalMapperOptions mapper;
   mapper.merge_delay_frames = options.merge_delay_frames;
   mapper.bundle.keyframes = options.local_bundle_keyframes;
+  mapper.final_bundle.radial_sigma = options.radial_sigma;
   return mapper;
 }
 

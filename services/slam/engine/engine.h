@@ -42,8 +42,12 @@ class Engine {
   /// no frame was begun, std::invalid_argument for images of another size.
   TrackingResult FinishFrame(const FrameObjects& objects, const cv::Mat& depth_m);
 
-  /// The end of the input: merges the background's work and adjusts the whole map (its newest 300 keyframes) once more.
+  /// The end of the input: merges the background's work and adjusts the whole map (its newest 300 keyframes) once more,
+  /// together with the radial distortion that the calibration left.
   void Flush();
+
+  /// Radial distortion k that Flush found on top of the calibration; 0 before. A perfect calibration gives 0.
+  double remaining_radial() const { return mapper_.remaining_radial(); }
 
   /// Everything that changed since the last call.
   MapUpdate TakeUpdate();

@@ -49,6 +49,12 @@ class LockedEngine {
     engine_.Flush();
   }
 
+  double RemainingRadial() {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return engine_.remaining_radial();
+  }
+
   py::dict TakeMapUpdate() {
     MapUpdate update;
     {
@@ -87,6 +93,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("seed", &EngineOptions::seed)
       .def_readwrite("merge_delay_frames", &EngineOptions::merge_delay_frames)
       .def_readwrite("local_bundle_keyframes", &EngineOptions::local_bundle_keyframes)
+      .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("map_from_first_camera", &EngineOptions::map_from_first_camera);
@@ -133,5 +140,6 @@ PYBIND11_MODULE(_engine, module) {
       .def("finish_frame", &LockedEngine::FinishFrame, py::arg("track_image").none(true), py::arg("object_ids"),
            py::arg("categories"), py::arg("motion_states"), py::arg("masks_fresh"), py::arg("depth_m").none(true))
       .def("flush", &LockedEngine::Flush)
-      .def("take_map_update", &LockedEngine::TakeMapUpdate);
+      .def("take_map_update", &LockedEngine::TakeMapUpdate)
+      .def_property_readonly("remaining_radial", &LockedEngine::RemainingRadial);
 }

@@ -45,6 +45,7 @@ void LocalMapper::Finish(SlamMap* map) {
   BundleProblem problem =
       LocalBundleAdjuster::CopyProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
   SolveBundle(camera_, options_.final_bundle, &problem);
+  remaining_radial_ = problem.radial;
   LocalBundleAdjuster::WriteBack(problem, map);
 }
 

@@ -20,7 +20,7 @@ struct LocalMapperOptions {
   int merge_delay_frames = 2;  ///< bundle adjustment of the keyframe at frame k is merged at frame k + this
   int final_keyframes = 300;   ///< newest keyframes that take part in the adjustment at the end of the input
   /// Errors that a local window leaves behind bend the map only little a frame, so the end needs a finer tolerance.
-  BundleOptions final_bundle{20, 20, 1e-8};
+  BundleOptions final_bundle{20, 20, 1e-8, 0.01};
 };
 
 /// Everything that happens around a keyframe: culling, triangulation and fusion at once, bundle adjustment in the
@@ -37,8 +37,12 @@ class LocalMapper {
   /// Merges the background's solution when its frame has come, and culls redundant keyframes.
   void MergeIfDue(SlamMap* map, int64_t frame_index);
 
-  /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more.
+  /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more,
+  /// together with the radial distortion that the calibration left.
   void Finish(SlamMap* map);
+
+  /// What Finish found; 0 before.
+  double remaining_radial() const { return remaining_radial_; }
 
  private:
   void Merge(SlamMap* map);
@@ -53,6 +57,7 @@ class LocalMapper {
   MovingLandmarkPlacer moving_placer_;
   MergeSlot slot_;
   KeyframeId newest_ = kNoId;
+  double remaining_radial_ = 0;
 };
 
 }  // namespace kinemap

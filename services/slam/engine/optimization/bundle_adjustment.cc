@@ -18,7 +18,7 @@ constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of 
 
 using PoseBlock = std::array<double, kPoseSize>;
 
-void Solve(const CameraModel& camera, bool robust, int iterations, double tolerance, BundleProblem* bundle) {
+void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool robust, BundleProblem* bundle) {
   std::vector<PoseBlock> poses(bundle->cameras.size());
   for (size_t i = 0; i < poses.size(); ++i) WritePose(bundle->cameras[i].camera_from_map, poses[i].data());
 
@@ -36,9 +36,14 @@ void Solve(const CameraModel& camera, bool robust, int iterations, double tolera
     if (observation.outlier) continue;
     double* pose = poses[observation.camera].data();
     double* point = bundle->points[observation.point].position_in_map.data();
-    problem.AddResidualBlock(
-        new ReprojectionCost(camera, observation.pixel_px, std::sqrt(observation.inverse_variance)),
-        robust ? &huber : nullptr, pose, point);
+    const double inverse_sigma = std::sqrt(observation.inverse_variance);
+    ceres::LossFunction* loss = robust ? &huber : nullptr;
+    if (bundle_options.radial_sigma > 0) {
+      problem.AddResidualBlock(new RadialReprojectionCost(camera, observation.pixel_px, inverse_sigma), loss, pose,
+                               point, &bundle->radial);
+    } else {
+      problem.AddResidualBlock(new ReprojectionCost(camera, observation.pixel_px, inverse_sigma), loss, pose, point);
+    }
     if (!camera_used[observation.camera]) {
       camera_used[observation.camera] = true;
       problem.SetManifold(pose, &manifold);
@@ -55,12 +60,16 @@ void Solve(const CameraModel& camera, bool robust, int iterations, double tolera
     }
   }
   if (!has_free_camera) return;
+  if (bundle_options.radial_sigma > 0) {
+    problem.AddResidualBlock(new RadialPriorCost(bundle_options.radial_sigma), nullptr, &bundle->radial);
+    ordering->AddElementToGroup(&bundle->radial, 1);
+  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
-  options.max_num_iterations = iterations;
+  options.max_num_iterations = robust ? bundle_options.robust_iterations : bundle_options.final_iterations;
   options.num_threads = 1;
-  options.function_tolerance = tolerance;
+  options.function_tolerance = bundle_options.tolerance;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
@@ -73,7 +82,8 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
   for (BundleObservation& observation : bundle->observations) {
     const Eigen::Vector3d point =
         bundle->cameras[observation.camera].camera_from_map * bundle->points[observation.point].position_in_map;
-    const double squared = (camera.Project(point) - observation.pixel_px).squaredNorm() * observation.inverse_variance;
+    const double squared = (ProjectRadial(camera, bundle->radial, point) - observation.pixel_px).squaredNorm() *
+                           observation.inverse_variance;
     observation.outlier = point.z() <= 0 || !(squared <= kOutlierBound);
   }
 }
@@ -81,10 +91,10 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
 }  // namespace
 
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem) {
-  Solve(camera, true, options.robust_iterations, options.tolerance, problem);
+  Solve(camera, options, true, problem);
   MarkOutliers(camera, problem);
   if (options.final_iterations == 0) return;
-  Solve(camera, false, options.final_iterations, options.tolerance, problem);
+  Solve(camera, options, false, problem);
   MarkOutliers(camera, problem);
 }
 

@@ -42,4 +42,32 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, kPoseSize, 3> {
   double inverse_sigma_;
 };
 
+/// The same with a radial distortion as third parameter.
+class RadialReprojectionCost : public ceres::SizedCostFunction<2, kPoseSize, 3, 1> {
+ public:
+  RadialReprojectionCost(const CameraModel& camera, const Eigen::Vector2d& pixel_px, double inverse_sigma)
+      : camera_(camera), pixel_px_(pixel_px), inverse_sigma_(inverse_sigma) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const CameraModel& camera_;
+  Eigen::Vector2d pixel_px_;
+  double inverse_sigma_;
+};
+
+/// Pulls the radial distortion towards zero: parameter over its standard deviation.
+class RadialPriorCost : public ceres::SizedCostFunction<1, 1> {
+ public:
+  explicit RadialPriorCost(double sigma) : sigma_(sigma) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  double sigma_;
+};
+
+/// Pixel of a point in the camera frame, with a radial distortion.
+Eigen::Vector2d ProjectRadial(const CameraModel& camera, double radial, const Eigen::Vector3d& point_in_camera);
+
 }  // namespace kinemap

@@ -98,6 +98,34 @@ TEST(ReprojectionCost, JacobiansAreItsDerivatives) {
   }
 }
 
+TEST(RadialReprojectionCost, JacobiansAreItsDerivatives) {
+  const CameraModel camera = TestCamera();
+  const RadialReprojectionCost cost(camera, {300, 200}, 0.8);
+  std::array<double, kPoseSize> pose;
+  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
+  std::array<double, 3> point{1.4, -1.6, 6};
+  double radial = -0.1;
+  const double* parameters[] = {pose.data(), point.data(), &radial};
+  double residual[2], by_pose[2 * kPoseSize], by_point[2 * 3], by_radial[2];
+  double* jacobians[] = {by_pose, by_point, by_radial};
+  cost.Evaluate(parameters, residual, jacobians);
+  constexpr double kStep = 1e-6;
+  double moved_residual[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<double, 3> moved = point;
+    moved[axis] += kStep;
+    const double* moved_parameters[] = {pose.data(), moved.data(), &radial};
+    cost.Evaluate(moved_parameters, moved_residual, nullptr);
+    for (int row = 0; row < 2; ++row) {
+      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_point[row * 3 + axis], 2e-3);
+    }
+  }
+  const double moved_radial = radial + kStep;
+  const double* moved_parameters[] = {pose.data(), point.data(), &moved_radial};
+  cost.Evaluate(moved_parameters, moved_residual, nullptr);
+  for (int row = 0; row < 2; ++row) EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_radial[row], 2e-3);
+}
+
 TEST(PoseManifold, MinusUndoesPlus) {
   std::array<double, kPoseSize> pose, moved;
   WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
@@ -163,6 +191,23 @@ TEST_F(Bundle, LeavesOutWrongObservationsAndFixedCameras) {
   }
   EXPECT_EQ(problem_.cameras[0].camera_from_map.Matrix(), truth_[0].Matrix());
   EXPECT_LT((problem_.cameras[4].camera_from_map.Matrix() - truth_[4].Matrix()).norm(), 1e-4);
+}
+
+TEST_F(Bundle, FindsTheRadialDistortionThatCalibrationLeft) {
+  for (BundleObservation& observation : problem_.observations) {
+    observation.pixel_px =
+        ProjectRadial(TestCamera(), 0.02, truth_[observation.camera] * scene_.points()[observation.point]);
+  }
+  Disturb();
+  SolveBundle(TestCamera(), {20, 30, 1e-10, 0.05}, &problem_);
+  EXPECT_NEAR(problem_.radial, 0.02, 0.001);
+  EXPECT_LT((problem_.cameras[4].camera_from_map.Matrix() - truth_[4].Matrix()).norm(), 0.002);
+}
+
+TEST_F(Bundle, FindsNoRadialDistortionWhereThereIsNone) {
+  Disturb();
+  SolveBundle(TestCamera(), {20, 30, 1e-10, 0.05}, &problem_);
+  EXPECT_NEAR(problem_.radial, 0, 1e-4);
 }
 
 TEST_F(Bundle, OneProblemGivesOneSolution) {

@@ -191,7 +191,8 @@ TEST_F(Tracker, MovingObjectsDoNotPullThePoseAlong) {
     ASSERT_TRUE(pose.tracked) << pose.reason;
     EXPECT_LT(CenterError(frame, center), 0.05);
     for (int i = 0; i < frame.size(); ++i) {
-      if (frame.labels[i].role != FeatureRole::kTracked) EXPECT_EQ(frame.landmark_ids[i], kNoId);
+      if (frame.labels[i].role == FeatureRole::kTracked) continue;
+      EXPECT_EQ(frame.landmark_ids[i], kNoId);
     }
   }
 }
