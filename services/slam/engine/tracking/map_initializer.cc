@@ -7,9 +7,10 @@
 namespace kinemap {
 namespace {
 
-// A motion counts only when the next best explains clearly less, and it explains nearly all inliers itself.
+// A motion counts only when the next best explains clearly less, and it explains most inliers itself: not all, because
+// in traffic the epipolar lines also fit features that move along them.
 constexpr double kAmbiguity = 0.7;
-constexpr double kLeastSupport = 0.9;
+constexpr double kLeastSupport = 0.8;
 
 template <typename... Values>
 std::string Format(const char* format, Values... values) {

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// The half of SlamMap that is about landmarks.
+#include <algorithm>
+#include <map>
+
+#include "map/slam_map.h"
+
+namespace kinemap {
+
+Landmark& SlamMap::CreateLandmark(const Eigen::Vector3d& position_in_map, KeyframeId anchor_id,
+                                  const FeatureLabel& label) {
+  auto landmark = std::make_unique<Landmark>();
+  landmark->id = first_id_ + static_cast<int64_t>(landmarks_.size());
+  landmark->anchor_id = anchor_id;
+  landmark->position_in_anchor = MapFromKeyframe(anchor_id).Inverse() * position_in_map;
+  landmark->first_keyframe_id = anchor_id;
+  landmark->state = label.state;
+  landmark->category = label.category;
+  landmark->object_id = label.object_id;
+  landmark->first_seen_ns = landmark->last_seen_ns = keyframe(anchor_id).timestamp_ns;
+  landmarks_.push_back(std::move(landmark));
+  fused_into_.push_back(kNoId);
+  ++live_landmarks_;
+  MarkChanged(*landmarks_.back());
+  return *landmarks_.back();
+}
+
+Landmark* SlamMap::FindLandmark(LandmarkId id) {
+  while (id != kNoId) {
+    const int64_t index = id - first_id_;
+    if (landmarks_[index] != nullptr) return landmarks_[index].get();
+    id = fused_into_[index];
+  }
+  return nullptr;
+}
+
+std::vector<LandmarkId> SlamMap::LiveLandmarks() const {
+  std::vector<LandmarkId> ids;
+  for (const auto& landmark : landmarks_) {
+    if (landmark != nullptr) ids.push_back(landmark->id);
+  }
+  return ids;
+}
+
+Eigen::Vector3d SlamMap::PositionInMap(const Landmark& landmark) const {
+  return MapFromKeyframe(landmark.anchor_id) * landmark.position_in_anchor;
+}
+
+void SlamMap::SetPositionInMap(Landmark* landmark, const Eigen::Vector3d& position_in_map) {
+  landmark->position_in_anchor = MapFromKeyframe(landmark->anchor_id).Inverse() * position_in_map;
+  MarkChanged(*landmark);
+}
+
+void SlamMap::Observe(Landmark* landmark, KeyframeId keyframe_id, int keypoint) {
+  Keyframe& keyframe = mutable_keyframe(keyframe_id);
+  landmark->observations[keyframe_id] = keypoint;
+  keyframe.landmark_ids[keypoint] = landmark->id;
+  landmark->first_seen_ns = std::min(landmark->first_seen_ns, keyframe.timestamp_ns);
+  landmark->last_seen_ns = std::max(landmark->last_seen_ns, keyframe.timestamp_ns);
+  MarkChanged(*landmark);
+}
+
+void SlamMap::EraseObservation(Landmark* landmark, KeyframeId keyframe_id) {
+  const auto found = landmark->observations.find(keyframe_id);
+  if (found == landmark->observations.end()) return;
+  mutable_keyframe(keyframe_id).landmark_ids[found->second] = kNoId;
+  landmark->observations.erase(found);
+  // A landmark whose end is known is the map's past and no longer needs to be seen.
+  if (landmark->observations.size() < 2 && landmark->valid_until_ns == kStillValid) {
+    RemoveLandmark(landmark->id);
+  } else if (landmark->anchor_id == keyframe_id && !landmark->observations.empty()) {
+    Reanchor(landmark, landmark->observations.begin()->first);
+  }
+}
+
+void SlamMap::Reanchor(Landmark* landmark, KeyframeId anchor_id) {
+  const Eigen::Vector3d position_in_map = PositionInMap(*landmark);
+  landmark->anchor_id = anchor_id;
+  SetPositionInMap(landmark, position_in_map);
+}
+
+void SlamMap::RemoveLandmark(LandmarkId id) {
+  std::unique_ptr<Landmark>& landmark = landmarks_[id - first_id_];
+  if (landmark == nullptr) return;
+  for (const auto& [keyframe_id, keypoint] : landmark->observations) {
+    mutable_keyframe(keyframe_id).landmark_ids[keypoint] = kNoId;
+  }
+  landmark.reset();
+  --live_landmarks_;
+  changed_landmarks_.erase(id);
+  if (reported_landmarks_.erase(id) > 0) removed_landmarks_.insert(id);
+}
+
+void SlamMap::FuseLandmarks(LandmarkId from_id, LandmarkId into_id) {
+  if (from_id == into_id) return;
+  Landmark* from = FindLandmark(from_id);
+  Landmark* into = FindLandmark(into_id);
+  const std::map<KeyframeId, int> observations = from->observations;
+  into->visible += from->visible;
+  into->found += from->found;
+  into->first_seen_ns = std::min(into->first_seen_ns, from->first_seen_ns);
+  RemoveLandmark(from_id);
+  fused_into_[from_id - first_id_] = into_id;
+  for (const auto& [keyframe_id, keypoint] : observations) {
+    if (into->observations.count(keyframe_id) == 0) Observe(into, keyframe_id, keypoint);
+  }
+  UpdateDescriptor(into);
+  UpdateViewRange(into);
+}
+
+void SlamMap::UpdateDescriptor(Landmark* landmark) {
+  std::vector<const Descriptor*> descriptors;
+  for (const auto& [keyframe_id, keypoint] : landmark->observations) {
+    descriptors.push_back(&keyframe(keyframe_id).features->descriptors[keypoint]);
+  }
+  int best_median = 257;
+  std::vector<int> distances(descriptors.size());
+  for (const Descriptor* candidate : descriptors) {
+    for (size_t i = 0; i < descriptors.size(); ++i) distances[i] = HammingDistance(*candidate, *descriptors[i]);
+    const auto middle = distances.begin() + (distances.size() - 1) / 2;
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle < best_median) {
+      best_median = *middle;
+      landmark->descriptor = *candidate;
+    }
+  }
+}
+
+void SlamMap::UpdateViewRange(Landmark* landmark) {
+  if (landmark->observations.empty()) return;
+  const Eigen::Vector3d position = PositionInMap(*landmark);
+  landmark->mean_view_direction.setZero();
+  for (const auto& [keyframe_id, keypoint] : landmark->observations) {
+    landmark->mean_view_direction += (position - keyframe(keyframe_id).map_from_keyframe.translation).normalized();
+  }
+  landmark->mean_view_direction.normalize();
+  const auto& [reference_id, reference_keypoint] = *landmark->observations.begin();
+  const Keyframe& reference = keyframe(reference_id);
+  const double distance = (position - reference.map_from_keyframe.translation).norm();
+  landmark->max_distance = distance * scales_.scale(reference.features->keypoints[reference_keypoint].octave);
+  landmark->min_distance = landmark->max_distance / scales_.scale(scales_.levels() - 1);
+}
+
+void SlamMap::UpdateLabel(Landmark* landmark) {
+  std::map<std::pair<uint32_t, MotionState>, int> votes;
+  const FeatureLabel* winner = nullptr;
+  int most = 0;
+  for (const auto& [keyframe_id, keypoint] : landmark->observations) {
+    const FeatureLabel& label = keyframe(keyframe_id).labels[keypoint];
+    const int count = ++votes[{label.object_id, label.state}];
+    if (count >= most) {
+      most = count;
+      winner = &label;
+    }
+  }
+  if (winner == nullptr) return;
+  landmark->state = winner->state;
+  landmark->object_id = winner->object_id;
+  landmark->category = winner->category;
+}
+
+}  // namespace kinemap
