@@ -71,7 +71,7 @@ class SlamMap {
   void UpdateDescriptor(Landmark* landmark);
   /// Viewing direction and range of distances, from the observations and poses.
   void UpdateViewRange(Landmark* landmark);
-  /// Label by the majority of its observations, the newest deciding a tie.
+  /// Object by the majority of its observations, the newest deciding a tie; state as that object's was seen last.
   void UpdateLabel(Landmark* landmark);
   void MarkChanged(const Landmark& landmark) { changed_landmarks_.insert(landmark.id); }
 

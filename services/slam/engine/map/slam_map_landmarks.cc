@@ -142,21 +142,23 @@ void SlamMap::UpdateViewRange(Landmark* landmark) {
 }
 
 void SlamMap::UpdateLabel(Landmark* landmark) {
-  std::map<std::pair<uint32_t, MotionState>, int> votes;
-  const FeatureLabel* winner = nullptr;
+  std::map<uint32_t, int> votes;
+  uint32_t winner = landmark->object_id;
   int most = 0;
   for (const auto& [keyframe_id, keypoint] : landmark->observations) {
-    const FeatureLabel& label = keyframe(keyframe_id).labels[keypoint];
-    const int count = ++votes[{label.object_id, label.state}];
-    if (count >= most) {
-      most = count;
-      winner = &label;
-    }
+    const uint32_t object_id = keyframe(keyframe_id).labels[keypoint].object_id;
+    const int count = ++votes[object_id];
+    if (count < most) continue;
+    most = count;
+    winner = object_id;
   }
-  if (winner == nullptr) return;
-  landmark->state = winner->state;
-  landmark->object_id = winner->object_id;
-  landmark->category = winner->category;
+  for (const auto& [keyframe_id, keypoint] : landmark->observations) {
+    const FeatureLabel& label = keyframe(keyframe_id).labels[keypoint];
+    if (label.object_id != winner) continue;
+    landmark->state = label.state;
+    landmark->object_id = label.object_id;
+    landmark->category = label.category;
+  }
 }
 
 }  // namespace kinemap

@@ -153,6 +153,23 @@ TEST_F(ThreeKeyframes, TheMajorityOfItsSightingsLabelsALandmark) {
   EXPECT_EQ(landmark->category, 3);
 }
 
+TEST_F(ThreeKeyframes, AnObjectFoundToStandIsNotVotedDownByItsUndecidedPast) {
+  SlamMap map(0, TestScales());
+  Scene one(1, 0, 8, 8);
+  Landmark* landmark = nullptr;
+  for (int k = 0; k < 4; ++k) {
+    const MotionState state = k < 3 ? MotionState::kUndecided : MotionState::kNonMoving;
+    const FeatureLabel label{k < 3 ? FeatureRole::kMapped : FeatureRole::kTracked, state, 4, 3};
+    const Frame frame =
+        one.Observe(TestCamera(), TestScales(), CameraAt({0.1 * k, 0, 0}), k + 1, 0, [&](int) { return label; });
+    const KeyframeId id = map.InsertKeyframe(frame).id;
+    if (k == 0) landmark = &map.CreateLandmark({0, 0, 8}, id, label);
+    map.Observe(landmark, id, 0);
+  }
+  map.UpdateLabel(landmark);
+  EXPECT_EQ(landmark->state, MotionState::kNonMoving);
+}
+
 TEST(Landmark, MeetsOnlyFeaturesOfItsOwnKind) {
   const FeatureLabel background{FeatureRole::kTracked, MotionState::kStatic, 0, -1};
   const FeatureLabel own{FeatureRole::kMapped, MotionState::kUndecided, 5, 3};
