@@ -62,6 +62,7 @@ class SlamService(FrameService):
         if self._engine is None:
             return [Outgoing(topics.MAP_UPDATE, MapUpdate(bundle.timestamp_ns, self._map_id))]
         self._engine.flush()
+        self._log.info("adjusted_at_the_end", remaining_radial=f"{self._engine.remaining_radial:.5f}")
         return [Outgoing(topics.MAP_UPDATE, self._engine.take_map_update(bundle.timestamp_ns))]
 
     def snapshot(self) -> State:
@@ -94,6 +95,7 @@ class SlamService(FrameService):
             pyramid_factor=options.pyramid_factor,
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
+            radial_sigma=options.radial_sigma,
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )

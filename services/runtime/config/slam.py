@@ -21,6 +21,9 @@ class SlamConfig(BaseModel):
     pyramid_factor: float = Field(1.2, gt=1.0, le=2.0, description="scale between two levels")
     seed: int = Field(1, ge=0, description="seed of every random sample")
     merge_delay_frames: int = Field(2, ge=1, le=20, description="frames between a keyframe and its bundle adjustment")
+    radial_sigma: float = Field(
+        0.01, ge=0, description="radial distortion the calibration may have left, found at the end; 0: it is exact"
+    )
     use_depth: bool = Field(
         True, description="place moving points, and set the scale, by the depth image if there is one"
     )
