@@ -16,6 +16,7 @@ from services.runtime.log import get_logger
 from services.runtime.outbox import State
 from services.runtime.service import Bundle, FrameService, Outgoing
 from services.slam.engine_adapter import EngineSettings, SlamEngine
+from services.slam.lost_policy import LostPolicy
 
 NAME = "slam"
 
@@ -37,6 +38,7 @@ class SlamService(FrameService):
         self._base_from_camera = np.array(config.mapstore.base_from_camera)
         self._log = get_logger(NAME)
         self._engine: SlamEngine | None = None
+        self._lost_policy = LostPolicy(config.slam.new_map_after_lost)
         self._calibration: CameraCalibration | None = None
         self._map_id = 0
         self._objects: Objects | None = None
@@ -51,6 +53,8 @@ class SlamService(FrameService):
         depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
         frame = engine.finish_frame(objects, masks, depth)
         self._note(frame)
+        if self._lost_policy.gives_up(frame):
+            self._begin_new_map(engine)
         update = engine.take_map_update(bundle.timestamp_ns)
         outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
         if frame.map_from_camera is not None:
@@ -81,10 +85,7 @@ class SlamService(FrameService):
     def _engine_for(self, calibration: CameraCalibration) -> SlamEngine:
         known = self._calibration
         if self._engine is not None and known is not None:
-            same = (
-                np.array_equal(known.intrinsics, calibration.intrinsics) and known.distortion == calibration.distortion
-            )
-            if not same or (known.width, known.height) != (calibration.width, calibration.height):
+            if not _same_camera(known, calibration):
                 raise InputError("the camera's calibration changed within a session, expected one camera a session")
             return self._engine
         options = self._options
@@ -102,6 +103,14 @@ class SlamService(FrameService):
         self._engine = SlamEngine(calibration, settings)
         self._calibration = calibration
         return self._engine
+
+    def _begin_new_map(self, engine: SlamEngine) -> None:
+        """Finish the map of `engine`; the next frame begins another with ids of its own."""
+        engine.flush()
+        self._engine = None
+        self._map_id += 1
+        self._lost_policy = LostPolicy(self._options.new_map_after_lost)
+        self._log.warning("new_map_after_lost", map_id=self._map_id)
 
     def _masks(self, objects: Objects | None) -> tuple[Objects | None, MaskSource]:
         """This frame's objects, else the newest there are, and which of the two."""

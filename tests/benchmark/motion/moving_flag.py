@@ -4,7 +4,8 @@
 `python -m tests.benchmark.motion.moving_flag [SEED ...]` drives the simulator's street with each seed (default: 7), and
 prints precision and recall per object-frame (objects at least 40 px high; moving: 1 m/s or more; standing: less than
 0.1 m/s; claimed: state MOVING after the tracker's filter) with counts by kind of motion, the ids each true object was
-given, and milliseconds of processor time a frame with one thread. Ends with code 1 where either is below 0.8.
+given, and milliseconds of processor time a frame with one thread; the table goes into docs/measurements.md. Ends with
+code 1 where either is below 0.8.
 """
 
 import sys
@@ -30,8 +31,10 @@ from services.simulator.frame import SimulatedFrame, SimulatedInstance
 from services.simulator.options import StreetOptions
 from services.simulator.street import Street
 from services.tracker.track_lifecycle import ObjectTracker
+from tests.benchmark.measurements_page import markdown_table, put
 
 LEAST = 0.8
+HEADER = ("seed", "precision", "recall", "ids a true object", "motion p50 / p95", "tracker p50 / p95")
 
 
 def kind_of(instance: SimulatedInstance, frame: SimulatedFrame, rules: MovingFlagRules) -> str | None:
@@ -51,8 +54,8 @@ def object_of(instance: SimulatedInstance, frame: SimulatedFrame, objects: Objec
     return int(np.bincount(objects.track_image[frame.labels == instance.instance_id]).argmax())
 
 
-def drive(seed: int) -> bool:
-    """Drive one street and print what was found; whether both numbers reach what they must."""
+def drive(seed: int) -> tuple[list[str], bool]:
+    """Drive one street and print what was found; a row of the table, and whether both numbers reach what they must."""
     street = Street(StreetOptions(seed=seed))
     motion, tracker, evaluator = SceneMotion(), ObjectTracker(), MovingFlagEvaluator()
     called: defaultdict[str, Counter[str]] = defaultdict(Counter)
@@ -90,7 +93,15 @@ def drive(seed: int) -> bool:
     print(f"  ids a true object: {np.mean([len(given) for given in ids.values()]):.2f} over {len(ids)} objects")
     for name, values in (("motion", motion_ms), ("tracker", tracker_ms)):
         print(f"  {name}: median {np.median(values):.1f} ms, 95 % {np.percentile(values, 95):.1f} ms")
-    return precision >= LEAST and recall >= LEAST
+    row = [
+        str(seed),
+        f"{precision:.3f}",
+        f"{recall:.3f}",
+        f"{np.mean([len(given) for given in ids.values()]):.2f}",
+        f"{np.median(motion_ms):.0f} / {np.percentile(motion_ms, 95):.0f} ms",
+        f"{np.median(tracker_ms):.0f} / {np.percentile(tracker_ms, 95):.0f} ms",
+    ]
+    return row, precision >= LEAST and recall >= LEAST
 
 
 def _true_object(instance: SimulatedInstance) -> TrueObject:
@@ -108,8 +119,10 @@ def _true_object(instance: SimulatedInstance) -> TrueObject:
 def main(*seeds: str) -> int:
     """Drive every seed."""
     cv2.setNumThreads(1)
-    reached = [drive(int(seed)) for seed in seeds or ("7",)]
-    return 0 if all(reached) else 1
+    driven = [drive(int(seed)) for seed in seeds or ("7",)]
+    command = f"python -m tests.benchmark.motion.moving_flag {' '.join(seeds)}"
+    put("moving-flag", command, markdown_table(HEADER, [row for row, _ in driven]))
+    return 0 if all(reached for _, reached in driven) else 1
 
 
 if __name__ == "__main__":
