@@ -39,16 +39,7 @@ def serve(config: Config) -> None:
         try:
             with ServiceHost(NAME, bus, config.run.session) as host:
                 host.metrics = recorder.metrics
-                host.sequence = recorder.sequence
-                host.ready()
-                while not host.stopping.is_set():
-                    recorder.step(0.1)
-                    host.sequence = recorder.sequence
-                    host.state = "done" if recorder.ended else "running"
-                host.state = "draining"
-                while recorder.step(0.0):
-                    host.sequence = recorder.sequence
-                host.state = "done" if recorder.ended else "stopped"
+                host.drive(recorder)
         finally:
             recorder.close()
 

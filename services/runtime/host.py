@@ -10,7 +10,7 @@ import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Self
+from typing import Protocol, Self
 
 from schemas import topics
 from schemas.codec import encode
@@ -32,6 +32,21 @@ _PR_SET_PDEATHSIG = 1
 def die_with_parent() -> None:
     """Have the kernel send SIGTERM when the supervisor dies, however it dies (Linux)."""
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+class Steps(Protocol):
+    """What a host drives."""
+
+    @property
+    def sequence(self) -> int:
+        """The last frame done, -1 for none yet."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether the end of the input is done."""
+
+    def step(self, timeout_s: float) -> bool:
+        """Handle one message if one comes within `timeout_s`; false when none did."""
 
 
 class ServiceHost:
@@ -64,6 +79,19 @@ class ServiceHost:
         self._bus.declare_alive(self.name)
         self.send_heartbeat()
 
+    def drive(self, loop: Steps) -> None:
+        """Step `loop` until SIGTERM; then do what has already arrived, and return."""
+        self.sequence = loop.sequence
+        self.ready()
+        while not self.stopping.is_set():
+            loop.step(0.1)
+            self.sequence = loop.sequence
+            self.state = "done" if loop.ended else "running"
+        self.state = "draining"
+        while loop.step(0.0):
+            self.sequence = loop.sequence
+        self.state = "done" if loop.ended else "stopped"
+
     def send_heartbeat(self) -> None:
         """One heartbeat now."""
         record = Heartbeat(
@@ -92,7 +120,7 @@ class ServiceHost:
 
 
 def run_frame_service(service: FrameService, bus: Bus, config: Config) -> None:
-    """Run `service` until SIGTERM; then do what has already arrived, and leave."""
+    """Run `service` on `bus` until SIGTERM."""
     folder = config.run.out / "state" / service.name
     lossless = config.delivery.mode == "lossless"
     outbox = Outbox(2 * config.delivery.window, folder if lossless and service.snapshot() is not None else None)
@@ -100,16 +128,7 @@ def run_frame_service(service: FrameService, bus: Bus, config: Config) -> None:
         loop = FrameLoop(service, bus, config.delivery, config.run.session, outbox)
         with ServiceHost(service.name, bus, config.run.session) as host:
             host.metrics = lambda: {**loop.metrics.values(), **service.metrics(), **_drops(loop)}
-            host.sequence = loop.sequence
-            host.ready()
-            while not host.stopping.is_set():
-                loop.step(0.1)
-                host.sequence = loop.sequence
-                host.state = "done" if loop.ended else "running"
-            host.state = "draining"
-            while loop.step(0.0):
-                host.sequence = loop.sequence
-            host.state = "done" if loop.ended else "stopped"
+            host.drive(loop)
     finally:
         service.close()
 
