@@ -22,7 +22,7 @@ using Matrix9d = Eigen::Matrix<double, 9, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 /// Similarity that moves the centroid to the origin and the mean distance to sqrt(2) (Hartley 1997).
-Eigen::Matrix3d Normalization(const std::vector<PixelPair>& pairs, Eigen::Vector2d PixelPair::*side) {
+Eigen::Matrix3d Normalization(const std::vector<PixelPair>& pairs, Eigen::Vector2d PixelPair::* side) {
   Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
   for (const PixelPair& pair : pairs) centroid += pair.*side;
   centroid /= static_cast<double>(pairs.size());
