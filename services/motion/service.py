@@ -69,13 +69,14 @@ class MotionService(FrameService):
             Outgoing(topics.MOVING_MASK, result.moving_mask),
         ]
 
-    def snapshot(self) -> State | None:
-        """The image before with its masks, and the motion it ended with."""
-        return arrays_of_state(self._scene.state) if self._scene.state is not None else None
+    def snapshot(self) -> State:
+        """The image before with its masks, and the motion it ended with; empty before the first image."""
+        return arrays_of_state(self._scene.state) if self._scene.state is not None else {}
 
     def restore(self, state: State) -> None:
         """Go on where a predecessor was killed."""
-        self._scene.state = state_of_arrays(state)
+        if state:
+            self._scene.state = state_of_arrays(state)
 
     def metrics(self) -> dict[str, float]:
         """Frames whose camera motion is unknown, and the instances that move in the last one."""

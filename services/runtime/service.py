@@ -59,7 +59,7 @@ class FrameService(ABC):
         return []
 
     def snapshot(self) -> State | None:
-        """All state over frames as arrays, or None for a service that has none."""
+        """All state over frames as arrays, empty before the first; None, always, for a service that has none."""
         return None
 
     def restore(self, state: State) -> None:  # noqa: B027 - a service without state has nothing to do

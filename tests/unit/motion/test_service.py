@@ -46,4 +46,4 @@ def test_a_killed_service_says_the_same_bytes() -> None:
 
 
 def test_a_service_that_saw_nothing_has_no_state() -> None:
-    assert MotionService(Config()).snapshot() is None
+    assert MotionService(Config()).snapshot() == {}

@@ -171,3 +171,13 @@ def test_another_session_is_not_ours() -> None:
     rig.send(0, session="yesterday")
     assert service.seen == []
     assert rig.loop.metrics.values()["other_session"] == 2
+
+
+def test_a_service_cannot_find_state_on_the_way() -> None:
+    """It would be killed without a trace of it on disk."""
+    service = Adder(stateful=False)
+    rig = Rig(service)
+    rig.send(0)
+    service.stateful = True
+    with pytest.raises(TypeError, match="snapshot"):
+        rig.send(1)
