@@ -124,12 +124,12 @@ class FrameLoop:
             (out.topic, encode(out.topic, out.record)) for out in outgoing
         )
         sent = Sent(bundle.envelope, messages)
-        state = self._service.snapshot()
+        state = self._service.snapshot() if self._lossless else None
         if state is not None and not self._stateful:
             raise TypeError(
                 f"{self._service.name}: snapshot() was None at the start, expected arrays, if only empty ones"
             )
-        self._outbox.record(sent, state if self._lossless else None)
+        self._outbox.record(sent, state)
         self.sequence = max(self.sequence, bundle.envelope.sequence)
         if not ending:
             self.metrics.observe_ms("process", (time.perf_counter() - started) * 1e3)
