@@ -22,4 +22,5 @@ else
 fi
 
 echo "set-up: installing pinned Python packages"
-"${pip[@]}" -r "$root/requirements.txt"
+# The list is complete, so nothing is resolved: trackeval would bring a second OpenCV that needs a display's libraries.
+"${pip[@]}" --no-deps -r "$root/requirements.txt"
