@@ -8,7 +8,7 @@ import typer
 from services.cli.config import config_app
 from services.cli.doctor import doctor
 from services.cli.down import down
-from services.cli.evaluate import evaluate
+from services.cli.evaluate.app import evaluate_app
 from services.cli.export import export
 from services.cli.record import record
 from services.cli.replay import replay
@@ -26,9 +26,10 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, up, down, status, record, replay, export, evaluate):
+for command in (run, up, down, status, record, replay, export):
     app.command()(command)
 app.add_typer(config_app, name="config")
+app.add_typer(evaluate_app, name="evaluate")
 app.command()(doctor)
 
 

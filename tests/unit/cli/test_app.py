@@ -190,10 +190,10 @@ def test_nonsense_trajectories(kinemap: Kinemap) -> None:
 
 
 def test_only_runs_are_compared(kinemap: Kinemap) -> None:
-    Path("run").mkdir()
+    Path("runs").mkdir()
     Path("a.tum").write_text("")
-    _one_line(kinemap("evaluate", "run", "a.tum"), "run/report.json: no such report")
-    _one_line(kinemap("evaluate", "a.tum", "run"), "a.tum: expected the folders of runs")
+    _one_line(kinemap("evaluate", "runs", "a.tum"), "runs/report.json: no such report")
+    _one_line(kinemap("evaluate", "run", "runs", "a.tum"), "runs/report.json: no such report")
 
 
 def test_brackets_are_printed_as_they_are(kinemap: Kinemap) -> None:
