@@ -4,7 +4,7 @@
 from services.camera.sources.detect import SourceOptions, open_source
 from services.camera.sources.source import Source
 from services.runtime.config import Config
-from services.simulator.options import StreetOptions
+from services.simulator.options import DriveOptions
 
 
 def open_configured_source(config: Config) -> Source:
@@ -16,5 +16,5 @@ def open_configured_source(config: Config) -> Source:
     return open_source(
         config.camera.input,
         SourceOptions(**config.camera.model_dump(exclude={"input"})),
-        StreetOptions(**config.simulator.model_dump()),
+        DriveOptions(**config.simulator.model_dump()),
     )

@@ -13,7 +13,7 @@ from services.camera.sources.simulator import Simulator
 from services.camera.sources.source import Source
 from services.camera.sources.video_file import VIDEO_SUFFIXES, VideoFile
 from services.runtime.errors import InputError
-from services.simulator.options import StreetOptions
+from services.simulator.options import DriveOptions
 
 SIMULATOR = "simulator"
 SESSION_SUFFIX = ".mcap"
@@ -34,7 +34,7 @@ class SourceOptions:
     max_frames: int | None = None
 
 
-def open_source(given: str, options: SourceOptions, street: StreetOptions) -> Source:
+def open_source(given: str, options: SourceOptions, street: DriveOptions) -> Source:
     """The source that `given` is: 'simulator', or the path of a folder or a file; checked, nothing decoded yet.
 
     Raises:
@@ -44,7 +44,7 @@ def open_source(given: str, options: SourceOptions, street: StreetOptions) -> So
     return source if options.max_frames is None else FirstFrames(source, options.max_frames)
 
 
-def _open_whole(given: str, options: SourceOptions, street: StreetOptions) -> Source:
+def _open_whole(given: str, options: SourceOptions, street: DriveOptions) -> Source:
     if given == SIMULATOR:
         return Simulator(street)
     path = Path(given)

@@ -8,10 +8,10 @@ import numpy.typing as npt
 
 from schemas.records import CameraCalibration, DepthImage, Image, TrueInstances, TrueObject, TruePose
 from services.camera.sources.source import SourceFrame
-from services.simulator.options import StreetOptions
+from services.simulator.options import DriveOptions
 
 if TYPE_CHECKING:
-    from services.simulator.street import Street
+    from services.simulator.drive import Drive
 
 
 class Simulator:
@@ -20,9 +20,9 @@ class Simulator:
     The world is built when the first frame is asked for: an input that is only looked at costs nothing.
     """
 
-    def __init__(self, options: StreetOptions) -> None:
+    def __init__(self, options: DriveOptions) -> None:
         self._options = options
-        self._street: Street | None = None
+        self._street: Drive | None = None
 
     @property
     def name(self) -> str:
@@ -45,9 +45,9 @@ class Simulator:
             return None
         if self._street is None:
             # The renderer costs seconds to load; whoever reads a folder does without.
-            from services.simulator.street import Street
+            from services.simulator.drive import Drive
 
-            self._street = Street(self._options)
+            self._street = Drive(self._options)
         seen = self._street.render(index)
         time_ns = seen.timestamp_ns
         camera = self._street.camera

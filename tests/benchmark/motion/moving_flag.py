@@ -27,9 +27,9 @@ from schemas.records import (
 )
 from services.evaluation.moving_flag import MovingFlagEvaluator, MovingFlagRules
 from services.motion.scene_motion import SceneMotion
+from services.simulator.drive import Drive
 from services.simulator.frame import SimulatedFrame, SimulatedInstance
-from services.simulator.options import StreetOptions
-from services.simulator.street import Street
+from services.simulator.options import DriveOptions
 from services.tracker.track_lifecycle import ObjectTracker
 from tests.benchmark.measurements_page import markdown_table, put
 
@@ -56,7 +56,7 @@ def object_of(instance: SimulatedInstance, frame: SimulatedFrame, objects: Objec
 
 def drive(seed: int) -> tuple[list[str], bool]:
     """Drive one street and print what was found; a row of the table, and whether both numbers reach what they must."""
-    street = Street(StreetOptions(seed=seed))
+    street = Drive(DriveOptions(seed=seed))
     motion, tracker, evaluator = SceneMotion(), ObjectTracker(), MovingFlagEvaluator()
     called: defaultdict[str, Counter[str]] = defaultdict(Counter)
     ids: defaultdict[int, set[int]] = defaultdict(set)

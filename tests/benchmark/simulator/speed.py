@@ -19,11 +19,11 @@ def main(size: str = "640x192", threads: str = "1") -> None:
     """Render every eighth frame of the default drive and print what it took."""
     cv2.setNumThreads(int(threads))
     start = time.perf_counter()
-    from services.simulator.options import StreetOptions
-    from services.simulator.street import Street
+    from services.simulator.drive import Drive
+    from services.simulator.options import DriveOptions
 
     width, height = (int(side) for side in size.split("x"))
-    street = Street(StreetOptions(width=width, height=height, threads=int(threads)))
+    street = Drive(DriveOptions(width=width, height=height, threads=int(threads)))
     built = time.perf_counter()
     wall_ms, cpu_ms = [], []
     for index in range(0, street.frame_count, 8):

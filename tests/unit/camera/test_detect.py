@@ -24,11 +24,11 @@ from services.runtime.config.camera import CameraConfig
 from services.runtime.config.simulator import SimulatorConfig
 from services.runtime.errors import InputError
 from services.runtime.session_file import RecordedMessage
-from services.simulator.options import StreetOptions
+from services.simulator.options import DriveOptions
 
 
 def _open(given: Path | str, **options: object) -> Source:
-    return open_source(str(given), SourceOptions(**options), StreetOptions())  # type: ignore[arg-type]
+    return open_source(str(given), SourceOptions(**options), DriveOptions())  # type: ignore[arg-type]
 
 
 def test_each_input_finds_its_source(kitti: Path, image_folder: Path, video: Path) -> None:
@@ -107,7 +107,7 @@ def test_configuration_reaches_the_source(kitti: Path) -> None:
 
 
 def test_simulator_section_says_what_the_street_can_be_asked_for() -> None:
-    defaults = {field.name: field.default for field in fields(StreetOptions)}
+    defaults = {field.name: field.default for field in fields(DriveOptions)}
     assert SimulatorConfig().model_dump() == defaults
 
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from services.camera.sources.simulator import Simulator
-from services.simulator.options import StreetOptions
+from services.simulator.options import DriveOptions
 
 
 @pytest.fixture(scope="module")
 def simulator() -> Simulator:
-    return Simulator(StreetOptions(width=160, height=96, frames=200))
+    return Simulator(DriveOptions(width=160, height=96, frames=200))
 
 
 def test_a_frame_has_all_its_truth(simulator: Simulator) -> None:
@@ -37,7 +37,7 @@ def test_the_drive_has_an_end_and_any_order_is_the_same(simulator: Simulator) ->
     late, early = simulator.frame(199), simulator.frame(0)
     assert late is not None
     assert early is not None
-    other = Simulator(StreetOptions(width=160, height=96, frames=200)).frame(199)
+    other = Simulator(DriveOptions(width=160, height=96, frames=200)).frame(199)
     assert other is not None
     np.testing.assert_array_equal(late.image.pixels, other.image.pixels)
     assert (late.name, early.name) == ("000199", "000000")

@@ -3,11 +3,11 @@
 
 import pytest
 
-from services.simulator.options import StreetOptions
-from services.simulator.street import Street
+from services.simulator.drive import Drive
+from services.simulator.options import DriveOptions
 
 
 @pytest.fixture(scope="session")
-def street() -> Street:
+def street() -> Drive:
     """The default drive."""
-    return Street(StreetOptions())
+    return Drive(DriveOptions())

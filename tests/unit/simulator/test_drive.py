@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-from services.simulator.actors import Actor
-from services.simulator.camera import EgoTrajectory
-from services.simulator.options import StreetOptions
-from services.simulator.road import Road
-from services.simulator.street import Street
-from services.simulator.traffic import TrafficPlanner
+from services.simulator.actors.actor import Actor
+from services.simulator.drive import Drive
+from services.simulator.options import DriveOptions
+from services.simulator.worlds.street.ego import EgoTrajectory
+from services.simulator.worlds.street.road import Road
+from services.simulator.worlds.street.traffic import TrafficPlanner
 
 
 def footprint(actor: Actor, t_s: float) -> np.ndarray:
@@ -36,7 +36,7 @@ def overlap(a: np.ndarray, b: np.ndarray) -> bool:
     return area > 1e-3
 
 
-def test_long_enough_with_curves_and_immediate_motion(street: Street) -> None:
+def test_long_enough_with_curves_and_immediate_motion(street: Drive) -> None:
     poses = np.array([street.world_from_camera(i) for i in range(street.frame_count)])
     steps = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1)
     assert street.frame_count >= 300
@@ -50,10 +50,10 @@ def test_long_enough_with_curves_and_immediate_motion(street: Street) -> None:
     assert np.allclose(np.einsum("nij,nkj->nik", poses[:, :3, :3], poses[:, :3, :3]), np.eye(3), atol=1e-9)
 
 
-def test_starts_where_nothing_moves(street: Street) -> None:
+def test_starts_where_nothing_moves(street: Drive) -> None:
     for index in range(street.frame_count):
         t_s = street.timestamp_ns(index) * 1e-9
-        if street.ego.distance_m(t_s) >= 60.0:
+        if street.camera_path.distance_m(t_s) >= 60.0:
             break
         eye = street.world_from_camera(index)[:2, 3]
         states = [actor.at(t_s) for actor in street.actors]
@@ -62,7 +62,7 @@ def test_starts_where_nothing_moves(street: Street) -> None:
     assert index > 50
 
 
-def test_every_kind_of_traffic_is_seen(street: Street) -> None:
+def test_every_kind_of_traffic_is_seen(street: Drive) -> None:
     seen: dict[int, list[tuple[bool, int, float]]] = defaultdict(list)
     categories = {}
     share = []
@@ -89,7 +89,7 @@ def test_every_kind_of_traffic_is_seen(street: Street) -> None:
     assert share[0] < 0.005
 
 
-def test_instances_agree_with_labels_and_motion(street: Street) -> None:
+def test_instances_agree_with_labels_and_motion(street: Drive) -> None:
     for index in (0, 110, 190, 240):
         frame = street.render(index)
         assert frame.labels.dtype == np.uint16
@@ -111,7 +111,7 @@ def test_instances_agree_with_labels_and_motion(street: Street) -> None:
             assert abs(depth - point_in_camera[2]) < reach
 
 
-def test_velocity_is_the_derivative_of_position(street: Street) -> None:
+def test_velocity_is_the_derivative_of_position(street: Drive) -> None:
     step_s = 1e-3
     for t_s in (4.0, 13.0, 21.0):
         for actor in street.actors:
@@ -123,7 +123,7 @@ def test_velocity_is_the_derivative_of_position(street: Street) -> None:
 
 @pytest.mark.parametrize("seed", [7, 0, 1, 2, 3, 11, 26])
 def test_nobody_touches_anybody_whatever_the_seed(seed: int) -> None:
-    options = StreetOptions(seed=seed)
+    options = DriveOptions(seed=seed)
     road = Road(options.drive_length_m, seed)
     ego = EgoTrajectory(options, road)
     actors = TrafficPlanner(options, road, ego, defaultdict(int)).plan()
@@ -138,7 +138,7 @@ def test_nobody_touches_anybody_whatever_the_seed(seed: int) -> None:
 
 
 def test_texture_feeds_orb_as_real_images_do() -> None:
-    street = Street(StreetOptions(width=1242, height=375))
+    street = Drive(DriveOptions(width=1242, height=375))
     orb = cv2.ORB_create(nfeatures=2000)
     for index in (0, 100, 200, 300):
         image = cv2.cvtColor(street.render(index).image, cv2.COLOR_BGR2GRAY)

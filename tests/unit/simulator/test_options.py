@@ -6,10 +6,10 @@ from collections import defaultdict
 import pytest
 
 from services.runtime.errors import InputError
-from services.simulator.camera import EgoTrajectory
-from services.simulator.options import StreetOptions
-from services.simulator.road import Road
-from services.simulator.traffic import TrafficPlanner
+from services.simulator.options import DriveOptions
+from services.simulator.worlds.street.ego import EgoTrajectory
+from services.simulator.worlds.street.road import Road
+from services.simulator.worlds.street.traffic import TrafficPlanner
 
 
 @pytest.mark.parametrize(
@@ -29,11 +29,16 @@ from services.simulator.traffic import TrafficPlanner
         ("walking_people", "many"),
         ("threads", True),
         ("empty_start_m", 1000.0),
+        ("world", "moon"),
+        ("light", 3),
+        ("shadows", 1),
+        ("distortion", (0.1,)),
+        ("traffic_seed", 0.5),
     ],
 )
 def test_bad_option_is_refused_in_one_line_that_names_it(name: str, value: object) -> None:
     with pytest.raises(InputError) as caught:
-        StreetOptions(**{name: value})  # type: ignore[arg-type]
+        DriveOptions(**{name: value})  # type: ignore[arg-type]
     message = str(caught.value)
     assert name in message
     assert repr(value) in message
@@ -42,7 +47,7 @@ def test_bad_option_is_refused_in_one_line_that_names_it(name: str, value: objec
 
 
 def test_more_traffic_than_the_street_holds_is_refused() -> None:
-    options = StreetOptions(crossing_cars=60)
+    options = DriveOptions(crossing_cars=60)
     road = Road(options.drive_length_m, options.seed)
     planner = TrafficPlanner(options, road, EgoTrajectory(options, road), defaultdict(int))
     with pytest.raises(InputError, match=r"crossing_cars=60: expected at most \d+ on this street"):
@@ -50,6 +55,6 @@ def test_more_traffic_than_the_street_holds_is_refused() -> None:
 
 
 def test_timestamps_do_not_drift() -> None:
-    assert StreetOptions().timestamp_ns(319) == 31_900_000_000
-    thirds = StreetOptions(rate_hz=30.0)
+    assert DriveOptions().timestamp_ns(319) == 31_900_000_000
+    thirds = DriveOptions(rate_hz=30.0)
     assert [thirds.timestamp_ns(i) for i in (0, 1, 2, 3, 300)] == [0, 33_333_333, 66_666_666, 100_000_000, 10**10]

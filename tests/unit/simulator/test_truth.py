@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from services.simulator.street import Street
+from services.simulator.drive import Drive
 
 STRONG_GRADIENT = 10.0
 
@@ -24,7 +24,7 @@ def pixel_grid(shape: tuple[int, ...]) -> NDArray[np.float32]:
     return np.stack([columns, rows], axis=-1)
 
 
-def place_by_depth_and_pose(street: Street, index: int) -> NDArray[np.float64]:
+def place_by_depth_and_pose(street: Drive, index: int) -> NDArray[np.float64]:
     """Where each pixel's static point appears in the next frame, by a projection of the test's own."""
     frame = street.render(index)
     k = street.camera.k
@@ -36,7 +36,7 @@ def place_by_depth_and_pose(street: Street, index: int) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("index", [3, 128, 205, 300])
-def test_flow_and_depth_with_pose_carry_one_image_into_the_next(street: Street, index: int) -> None:
+def test_flow_and_depth_with_pose_carry_one_image_into_the_next(street: Drive, index: int) -> None:
     now, then = street.render(index), street.render(index + 1)
     flow = street.flow(index)
     static = (now.labels == 0) & (now.depth_m > 0.0)
@@ -57,7 +57,7 @@ def test_flow_and_depth_with_pose_carry_one_image_into_the_next(street: Street, 
     assert np.median(unmoved) > 8.0
 
 
-def test_flow_carries_moving_cars_and_people(street: Street) -> None:
+def test_flow_carries_moving_cars_and_people(street: Drive) -> None:
     compared_px = 0
     for index in range(90, 260, 17):
         now, then, flow = street.render(index), street.render(index + 1), street.flow(index)
@@ -72,7 +72,7 @@ def test_flow_carries_moving_cars_and_people(street: Street) -> None:
     assert compared_px > 3000
 
 
-def test_hidden_and_leaving_pixels_are_marked(street: Street) -> None:
+def test_hidden_and_leaving_pixels_are_marked(street: Drive) -> None:
     flow = street.flow(200)
     at = pixel_grid(flow.visible.shape) + flow.flow_px
     height, width = flow.visible.shape
@@ -83,7 +83,7 @@ def test_hidden_and_leaving_pixels_are_marked(street: Street) -> None:
     assert 0.001 < hidden.mean() < 0.25
 
 
-def test_road_lies_at_the_cameras_height(street: Street) -> None:
+def test_road_lies_at_the_cameras_height(street: Drive) -> None:
     """Depth of the road straight ahead follows from the height of the camera."""
     frame = street.render(0)
     k = street.camera.k

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.simulator.actors.placement import planar_pose
+
 Floats = NDArray[np.float64]
 
 LANE_CENTRE_M = 1.65
@@ -94,12 +96,3 @@ class Road:
     def near_junction(self, s: float, margin_m: float) -> bool:
         """Whether a crossing street lies within `margin_m` of s."""
         return any(abs(s - junction) < margin_m for junction in self.junctions_m)
-
-
-def planar_pose(xy: Floats, heading: float) -> Floats:
-    """world_from_object, 4x4, of an upright object on the plane z = 0."""
-    cos, sin = np.cos(heading), np.sin(heading)
-    matrix = np.eye(4)
-    matrix[:2, :2] = [[cos, -sin], [sin, cos]]
-    matrix[:2, 3] = xy
-    return matrix

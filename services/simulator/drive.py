@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulator's face: a street, driven through once."""
+"""The simulator's face: one drive through one world."""
 
 from __future__ import annotations
 
@@ -7,26 +7,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
-from services.simulator.actors import Actor, ActorState
-from services.simulator.camera import EgoTrajectory, PinholeCamera
-from services.simulator.contact import Footprint
-from services.simulator.flow import View, flow_between
+from services.simulator.actors.actor import Actor, ActorState
+from services.simulator.camera.pinhole import PinholeCamera
 from services.simulator.frame import SimulatedFlow, SimulatedFrame, SimulatedInstance
-from services.simulator.library import paint_library
-from services.simulator.options import StreetOptions
-from services.simulator.renderer import Renderer, Surfaces
-from services.simulator.road import Road
-from services.simulator.textures import TextureAtlas
-from services.simulator.traffic import TrafficPlanner
-from services.simulator.triangles import TriangleTable, joined, table_of
-from services.simulator.world import build_world
+from services.simulator.options import DriveOptions
+from services.simulator.rendering.contact import Footprint
+from services.simulator.rendering.flow import View, flow_between
+from services.simulator.rendering.renderer import Renderer, Surfaces
+from services.simulator.rendering.triangles import TriangleTable, joined, table_of
+from services.simulator.worlds.build import build_world
 
 _VIEW_RANGE_M = 180.0
 """Moving actors farther away than this are left out: three pixels of the default lens."""
 
 
-class Street:
-    """A drive through a street. `render(i)` and `flow(i)` are pure functions of (options, i), in any order.
+class Drive:
+    """A drive through a world. `render(i)` and `flow(i)` are pure functions of (options, i), in any order.
 
     camera: K, width, height. actors: everybody, also those not in sight. frame_count: frames of the drive.
 
@@ -34,19 +30,17 @@ class Street:
         InputError: options that cannot be met.
     """
 
-    def __init__(self, options: StreetOptions | None = None) -> None:
-        self.options = options or StreetOptions()
+    def __init__(self, options: DriveOptions | None = None) -> None:
+        self.options = options or DriveOptions()
         self.camera = PinholeCamera.from_options(self.options)
-        self.road = Road(self.options.drive_length_m, self.options.seed)
-        self.ego = EgoTrajectory(self.options, self.road)
-        atlas = TextureAtlas(paint_library(self.options.seed))
-        self.actors: list[Actor] = TrafficPlanner(self.options, self.road, self.ego, atlas.index).plan()
-        mesh = build_world(self.road, self.options.seed, atlas.index)
-        world = table_of(mesh, mesh.vertices, np.zeros(len(mesh.triangles), np.int32))
+        world = build_world(self.options)
+        self.actors: list[Actor] = world.actors
+        self.camera_path = world.camera_path
+        table = table_of(world.mesh, world.mesh.vertices, np.zeros(len(world.mesh.triangles), np.int32))
         self._still = {actor.instance_id: actor.at(0.0) for actor in self.actors if actor.always_still}
         parked = [_table_at(actor, self._still[actor.instance_id]) for actor in self.actors if actor.always_still]
-        self._static = Surfaces(joined([world, *parked]), self.options.threads)
-        self._renderer = Renderer(self.camera, self._static, atlas)
+        self._static = Surfaces(joined([table, *parked]), self.options.threads)
+        self._renderer = Renderer(self.camera, self._static, world.atlas, world.sky_texture)
 
     @property
     def frame_count(self) -> int:
@@ -59,7 +53,7 @@ class Street:
 
     def world_from_camera(self, index: int) -> NDArray[np.float64]:
         """Camera pose of a frame, 4x4, without rendering it."""
-        return self.ego.world_from_camera(self._time_s(index))
+        return self.camera_path.world_from_camera(self._time_s(index))
 
     def render(self, index: int) -> SimulatedFrame:
         """The frame at `index`.
@@ -68,7 +62,7 @@ class Street:
             InputError: no such frame.
         """
         t_s = self._time_s(index)
-        pose = self.ego.world_from_camera(t_s)
+        pose = self.camera_path.world_from_camera(t_s)
         near = self._actors_near(pose, t_s)
         footprints = [Footprint(state.world_from_object, *actor.size_m[:2]) for actor, state in near]
         view = self._renderer.render(pose, self._moving_surfaces(near), footprints)
@@ -84,7 +78,7 @@ class Street:
             InputError: no such frame, or it is the last one.
         """
         t_s, next_t_s = self._time_s(index), self._time_s(index + 1)
-        pose, next_pose = self.ego.world_from_camera(t_s), self.ego.world_from_camera(next_t_s)
+        pose, next_pose = self.camera_path.world_from_camera(t_s), self.camera_path.world_from_camera(next_t_s)
         now = self._renderer.cast(pose, self._moving_surfaces(self._actors_near(pose, t_s)))
         then = self._renderer.cast(next_pose, self._moving_surfaces(self._actors_near(next_pose, next_t_s)))
         corners_now, corners_then = (

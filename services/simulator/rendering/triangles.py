@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.meshes import Mesh, cross
+from services.simulator.shapes.meshes import Mesh, cross
 
 Floats = NDArray[np.float64]
 

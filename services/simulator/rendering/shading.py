@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.textures import Lookup, TextureAtlas
-from services.simulator.triangles import TriangleTable
+from services.simulator.rendering.textures import Lookup, TextureAtlas
+from services.simulator.rendering.triangles import TriangleTable
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.camera import PinholeCamera
-from services.simulator.contact import ContactShade, Footprint
-from services.simulator.raycast import RayScene
-from services.simulator.shading import Shader, ViewTriangles
-from services.simulator.textures import TextureAtlas
-from services.simulator.triangles import TriangleTable, joined
+from services.simulator.camera.pinhole import PinholeCamera
+from services.simulator.rendering.contact import ContactShade, Footprint
+from services.simulator.rendering.raycast import RayScene
+from services.simulator.rendering.shading import Shader, ViewTriangles
+from services.simulator.rendering.textures import TextureAtlas
+from services.simulator.rendering.triangles import TriangleTable, joined
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -57,9 +57,9 @@ class Surfaces:
 class Renderer:
     """Renders static surfaces and, among them, those of the moment; triangles count on from the static ones."""
 
-    def __init__(self, camera: PinholeCamera, static: Surfaces, atlas: TextureAtlas) -> None:
+    def __init__(self, camera: PinholeCamera, static: Surfaces, atlas: TextureAtlas, sky_texture: str) -> None:
         self._camera, self._static = camera, static
-        self._shader = Shader(atlas, atlas.index["clouds"])
+        self._shader = Shader(atlas, atlas.index[sky_texture])
         self._columns, self._rows = camera.pixel_grid()
         self._x, self._y = camera.normalised(self._columns, self._rows)
         self._contact = ContactShade(camera)

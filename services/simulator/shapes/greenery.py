@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from services.simulator.meshes import Mesh, blob, box, merged, quads, tube
+from services.simulator.shapes.meshes import Mesh, blob, box, merged, quads, tube
 
 
 def tree_mesh(rng: np.random.Generator, texture: Mapping[str, int]) -> Mesh:

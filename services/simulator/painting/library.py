@@ -8,8 +8,9 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from services.simulator import facades, people, surfaces, vehicle_textures, vehicles
-from services.simulator.surfaces import Image, coloured, noise, to_image
+from services.simulator.painting import facades, surfaces, vehicle_textures
+from services.simulator.painting.surfaces import Image, coloured, noise, to_image
+from services.simulator.shapes import people, vehicles
 
 SIGN_COUNT = 4
 ROOFS = ("roof_red", "roof_brown", "roof_grey")

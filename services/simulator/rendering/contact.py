@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.camera import PinholeCamera
+from services.simulator.camera.pinhole import PinholeCamera
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]

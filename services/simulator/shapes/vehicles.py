@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.meshes import Mesh, Tint, box, merged, quads, tube
+from services.simulator.shapes.meshes import Mesh, Tint, box, merged, quads, tube
 
 Floats = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.meshes import Mesh, blob, merged, quads, tube
-from services.simulator.surfaces import Image, coloured, noise, to_image
+from services.simulator.painting.surfaces import Image, coloured, noise, to_image
+from services.simulator.shapes.meshes import Mesh, blob, merged, quads, tube
 
 PERSON_SIZE_M = (0.6, 0.62, 1.78)
 _STRIDE_M = 1.45

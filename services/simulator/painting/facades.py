@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.surfaces import Colour, Floats32, Image, bricks, noise, planks, plaster, to_image
+from services.simulator.painting.surfaces import Colour, Floats32, Image, bricks, noise, planks, plaster, to_image
 
 Floats = NDArray[np.float64]
 

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator import facades, greenery, houses
-from services.simulator.library import ROOFS, SIGN_COUNT
-from services.simulator.meshes import Mesh, merged, quads, surface
-from services.simulator.road import (
+from services.simulator.painting import facades
+from services.simulator.painting.library import ROOFS, SIGN_COUNT
+from services.simulator.shapes import greenery, houses
+from services.simulator.shapes.meshes import Mesh, merged, quads, surface
+from services.simulator.worlds.street.road import (
     AHEAD_M,
     BEHIND_M,
     CROSS_HALF_WIDTH_M,
@@ -27,7 +28,7 @@ _CROSS_LENGTH_M = 110.0
 _MARK_HEIGHT_M = 0.006
 
 
-def build_world(road: Road, seed: int, texture: Mapping[str, int]) -> Mesh:
+def street_mesh(road: Road, seed: int, texture: Mapping[str, int]) -> Mesh:
     """Everything that stands, parked cars apart, as one mesh."""
     rng = np.random.default_rng([seed, 3])
     first, last = -BEHIND_M, road.length_m + AHEAD_M

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
-from services.simulator import people, vehicles
-from services.simulator.actors import MOVING_M_S, Actor
-from services.simulator.camera import EgoTrajectory
-from services.simulator.meshes import Mesh, Tint
-from services.simulator.motion import AcrossPath, LanePath, Path, SpeedProfile
-from services.simulator.options import StreetOptions
-from services.simulator.road import BAY_CENTRE_M, LANE_CENTRE_M, Road
+from services.simulator.actors.actor import MOVING_M_S, Actor
+from services.simulator.actors.motion import Path, SpeedProfile
+from services.simulator.options import DriveOptions
+from services.simulator.shapes import people, vehicles
+from services.simulator.shapes.meshes import Mesh, Tint
+from services.simulator.worlds.street.ego import EgoTrajectory
+from services.simulator.worlds.street.paths import AcrossPath, LanePath
+from services.simulator.worlds.street.road import BAY_CENTRE_M, LANE_CENTRE_M, Road
 
 Floats = NDArray[np.float64]
 
@@ -46,9 +47,9 @@ class Looks(TypedDict):
 class TrafficPlanner:
     """Draws actors one after another; each is drawn again until it keeps clear of the camera and of all before it."""
 
-    def __init__(self, options: StreetOptions, road: Road, ego: EgoTrajectory, texture: Mapping[str, int]) -> None:
+    def __init__(self, options: DriveOptions, road: Road, ego: EgoTrajectory, texture: Mapping[str, int]) -> None:
         self._options, self._road, self._ego, self._texture = options, road, ego, texture
-        self._rng = np.random.default_rng([options.seed, 4])
+        self._rng = np.random.default_rng([options.seed_of_traffic, 4])
         self._actors: list[Actor] = []
         self._car_meshes: dict[tuple[vehicles.BodyStyle, Tint], Mesh] = {}
         duration_s = road.length_m / options.speed_m_s
@@ -80,7 +81,8 @@ class TrafficPlanner:
             for number in range(wanted):
                 if not self._admit(draw, looks(len(self._actors) + 1), number):
                     raise InputError(
-                        f"simulator {name}={wanted}: expected at most {number} on this street (seed {options.seed})"
+                        f"simulator {name}={wanted}: expected at most {number} on this street "
+                        f"(seed {options.seed_of_traffic})"
                     )
         return self._actors
 
@@ -121,7 +123,7 @@ class TrafficPlanner:
         return np.asarray(position[:, None] + np.array(_EGO_DISCS_M)[None, :, None] * ahead[:, None])
 
     def _car(self, instance_id: int) -> Looks:
-        rng = np.random.default_rng([self._options.seed, 5, instance_id])
+        rng = np.random.default_rng([self._options.seed_of_traffic, 5, instance_id])
         style = vehicles.STYLES[int(rng.choice(3, p=[0.42, 0.42, 0.16]))]
         paint = vehicles.PAINTS[int(rng.integers(0, len(vehicles.PAINTS)))]
         if (style, paint) not in self._car_meshes:
@@ -137,7 +139,7 @@ class TrafficPlanner:
         )
 
     def _person(self, instance_id: int) -> Looks:
-        rng = np.random.default_rng([self._options.seed, 5, instance_id])
+        rng = np.random.default_rng([self._options.seed_of_traffic, 5, instance_id])
         height = float(rng.uniform(1.58, 1.88))
         jacket = int(rng.integers(0, people.JACKET_COUNT))
         mesh, gait = people.person_mesh(jacket, height, self._texture, bool(rng.random() < 0.5))

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.camera import PinholeCamera
+from services.simulator.camera.pinhole import PinholeCamera
 from services.simulator.frame import SimulatedFlow
-from services.simulator.renderer import Hits
+from services.simulator.rendering.renderer import Hits
 
 Floats = NDArray[np.float64]
 

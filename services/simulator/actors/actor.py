@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Things of the street that can move, as pure functions of time."""
+"""Things of a world that can move, as pure functions of time."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.meshes import Mesh
-from services.simulator.motion import Path, SpeedProfile
-from services.simulator.people import Gait
-from services.simulator.road import planar_pose
+from services.simulator.actors.motion import Path, SpeedProfile
+from services.simulator.actors.placement import planar_pose
+from services.simulator.shapes.meshes import Mesh
+from services.simulator.shapes.people import Gait
 
 Floats = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ class ActorState:
     """An actor at one time, in the world frame.
 
     world_from_object: 4x4, on the ground. centre_m: (3,), middle of the cuboid. velocity_m_s: (3,), along the ground;
-    climbing kerbs is not counted. walked_m: way gone. present: whether the street reaches to where it is.
+    climbing kerbs is not counted. walked_m: way gone. present: whether the world reaches to where it is.
     """
 
     world_from_object: Floats
