@@ -8,7 +8,7 @@ from typing import Literal
 from services.camera.sources.first_frames import FirstFrames
 from services.camera.sources.image_files import list_images
 from services.camera.sources.image_folder import ImageFolder
-from services.camera.sources.kitti_odometry import ASSUMED_RATE_HZ, KittiOdometry, is_kitti_folder
+from services.camera.sources.kitti_odometry import KittiOdometry, is_kitti_folder
 from services.camera.sources.simulator import Simulator
 from services.camera.sources.source import Source
 from services.camera.sources.video_file import VIDEO_SUFFIXES, VideoFile
@@ -69,7 +69,7 @@ def _open_folder(path: Path, options: SourceOptions) -> Source:
                 path,
                 left=None if options.kitti_images == "auto" else options.kitti_images,
                 stereo=options.stereo,
-                rate_hz=options.rate_hz or ASSUMED_RATE_HZ,
+                rate_hz=options.rate_hz,
             )
         if (path / "images").is_dir() or list_images(path):
             return ImageFolder(path, calibration=options.calibration, rate_hz=options.rate_hz)

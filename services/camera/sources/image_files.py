@@ -2,6 +2,7 @@
 """A folder of image files as a sequence of images of one size."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import cv2
@@ -25,19 +26,15 @@ def _natural_order(path: Path) -> tuple[tuple[tuple[int, int | str], ...], str]:
     return tuple((0, int(part)) if part.isdecimal() else (1, part) for part in parts), path.name
 
 
-class ImageFiles:
-    """The images of `folder` by index, all of the size that the first one has.
+class ListedImages:
+    """The images of `paths` by index, all of the size that the first one has.
 
     Raises:
-        InputError: no folder, no image in it, or an image whose head is broken or tells another size.
+        InputError: an image whose head is broken or tells another size.
     """
 
-    def __init__(self, folder: Path) -> None:
-        if not folder.is_dir():
-            raise InputError(f"image folder {folder}: no such folder")
-        self.paths = list_images(folder)
-        if not self.paths:
-            raise InputError(f"image folder {folder}: no images, expected files ending in {', '.join(IMAGE_SUFFIXES)}")
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self.paths = list(paths)
         self.size = read_image_size(self.paths[0])
         for path in self.paths[1:]:
             self._expect_size(path, read_image_size(path))
@@ -77,3 +74,19 @@ class ImageFiles:
                 f"image {path}: {size[0]}x{size[1]} px, expected {self.size[0]}x{self.size[1]} "
                 f"as in {self.paths[0].name}"
             )
+
+
+class ImageFiles(ListedImages):
+    """The images of `folder` in the order of their names.
+
+    Raises:
+        InputError: no folder, no image in it, or an image whose head is broken or tells another size.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        if not folder.is_dir():
+            raise InputError(f"image folder {folder}: no such folder")
+        paths = list_images(folder)
+        if not paths:
+            raise InputError(f"image folder {folder}: no images, expected files ending in {', '.join(IMAGE_SUFFIXES)}")
+        super().__init__(paths)

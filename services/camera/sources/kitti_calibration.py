@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""KITTI's calib.txt: the projection matrices P0..P3 of the rectified cameras.
+"""KITTI's calib.txt and calib_cam_to_cam.txt: the projection matrices P0..P3 of the rectified cameras.
 
 Source: Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; the odometry benchmark's readme.
 """
@@ -13,7 +13,8 @@ import numpy.typing as npt
 from services.camera.sources.number_rows import parse_numbers, read_lines
 from services.runtime.errors import InputError
 
-_PROJECTION_NAME = re.compile(r"(P\d):?")
+# P2 in the benchmarks' calib.txt, P_rect_02 in the raw recordings' calib_cam_to_cam.txt.
+_PROJECTION_NAME = re.compile(r"P(?:_rect_0)?(\d):?")
 
 
 def read_projections(path: Path) -> dict[str, npt.NDArray[np.float64]]:
@@ -37,7 +38,7 @@ def read_projections(path: Path) -> dict[str, npt.NDArray[np.float64]]:
                 f"{path} line {line_number}: focal lengths {projection[0, 0]:g} and {projection[1, 1]:g} px over "
                 f"{projection[2, 2]:g}, expected positive ones over 1"
             )
-        projections[match[1]] = projection
+        projections[f"P{match[1]}"] = projection
     if not projections:
         raise InputError(f"{path}: no projection matrix, expected a line 'P0: <12 numbers>'")
     return projections

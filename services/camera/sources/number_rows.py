@@ -11,6 +11,7 @@ import numpy.typing as npt
 from services.runtime.errors import InputError
 
 NS_PER_S = 1_000_000_000
+ASSUMED_RATE_HZ = 10.0
 _LATEST_S = 2**63 // NS_PER_S
 
 
@@ -50,6 +51,23 @@ def parse_numbers(path: Path, line_number: int, text: str, count: int) -> list[f
     return numbers
 
 
+def parse_time_ns(path: Path, line_number: int, text: str, after_ns: int = -1) -> int:
+    """A time in seconds in nanoseconds, exact to the decimal, later than `after_ns`.
+
+    Raises:
+        InputError: no number, a negative one, or one that is not later.
+    """
+    try:
+        time_s = Decimal(text)
+        in_range = 0 <= time_s < _LATEST_S
+    except InvalidOperation as error:
+        raise InputError(f"{path} line {line_number}: {text!r}, expected one time in seconds") from error
+    time_ns = int((time_s * NS_PER_S).to_integral_value()) if in_range else -1
+    if time_ns <= after_ns:
+        raise InputError(f"{path} line {line_number}: time {text} s, expected times that increase from 0")
+    return time_ns
+
+
 def read_times_ns(path: Path, frames: int) -> list[int]:
     """The first `frames` times of a file with one time in seconds a line, in nanoseconds, exact to the decimal.
 
@@ -57,21 +75,27 @@ def read_times_ns(path: Path, frames: int) -> list[int]:
         InputError: fewer times than frames, no number, a negative one, or times that do not increase.
     """
     times_ns: list[int] = []
-    for line_number, line in read_lines(path):
-        try:
-            time_s = Decimal(line)
-            in_range = 0 <= time_s < _LATEST_S
-        except InvalidOperation as error:
-            raise InputError(f"{path} line {line_number}: {line!r}, expected one time in seconds") from error
-        time_ns = int((time_s * NS_PER_S).to_integral_value()) if in_range else -1
-        if time_ns <= (times_ns[-1] if times_ns else -1):
-            raise InputError(f"{path} line {line_number}: time {line} s, expected times that increase from 0")
-        times_ns.append(time_ns)
-        if len(times_ns) == frames:
-            break
+    for line_number, line in read_lines(path)[:frames]:
+        times_ns.append(parse_time_ns(path, line_number, line, times_ns[-1] if times_ns else -1))
     if len(times_ns) < frames:
         raise InputError(f"{path}: {len(times_ns)} times, expected {frames}, one for every image")
     return times_ns
+
+
+def times_of_folder(folder: Path, frames: int, rate_hz: float | None) -> tuple[list[int], float, list[str]]:
+    """Times in ns and their rate in Hz by times.txt, else by `rate_hz`, else by an assumed rate; and what was assumed.
+
+    Raises:
+        InputError: a times.txt that cannot be used.
+    """
+    if (folder / "times.txt").is_file():
+        times_ns = read_times_ns(folder / "times.txt", frames)
+        return times_ns, rate_of(times_ns, rate_hz or ASSUMED_RATE_HZ), []
+    notes = []
+    if rate_hz is None:
+        rate_hz = ASSUMED_RATE_HZ
+        notes.append(f"no times.txt in {folder.name}: times are assumed at {rate_hz:g} Hz")
+    return even_times_ns(frames, rate_hz), rate_hz, notes
 
 
 def even_times_ns(frames: int, rate_hz: float) -> list[int]:
