@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from schemas.records import Density, DensityLevel, MotionState
 from services.evaluation.ground_plane import GroundPlane, ground_plane
 from services.evaluation.map_points import Points
-from services.evaluation.trajectory import Trajectory
 from services.evaluation.trajectory_error import TrajectoryError
+from services.formats.trajectory import Trajectory
 
 STATE_COLOURS: dict[MotionState, str] = {
     MotionState.STATIC: "#2e8b57",

@@ -14,8 +14,8 @@ from schemas.records import DensityLevel, TrackingState
 from services.evaluation.alignment import Alignment
 from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import SessionLog
-from services.evaluation.trajectory import Trajectory
 from services.evaluation.trajectory_error import TrajectoryError, trajectory_error
+from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError, KinemapError
 
 REPORT_VERSION = 1

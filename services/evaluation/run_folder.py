@@ -11,9 +11,10 @@ from services.evaluation.report import build_report, stage_times, write_report
 from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import SessionLog
 from services.evaluation.session_reading import read_session
-from services.evaluation.trajectory import Trajectory
 from services.evaluation.trajectory_error import TrajectoryError, trajectory_error
-from services.evaluation.trajectory_files import read_trajectory, write_tum
+from services.evaluation.trajectory_files import read_trajectory
+from services.formats.trajectory import Trajectory
+from services.formats.tum import write_tum
 from services.runtime.errors import InputError
 
 TRAJECTORY_NAME = "trajectory.tum"

@@ -20,7 +20,7 @@ from schemas.records import (
 )
 from services.evaluation.map_points import MapPoints
 from services.evaluation.moving_flag import MovingFlagEvaluator
-from services.evaluation.trajectory import Trajectory
+from services.formats.trajectory import Trajectory
 
 READ_TOPICS = (
     topics.MANIFEST,

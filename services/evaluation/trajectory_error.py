@@ -8,7 +8,8 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from services.evaluation.alignment import MINIMUM_POSES, Alignment, Similarity, align
-from services.evaluation.trajectory import DEFAULT_MATCH_NS, Matches, Trajectory, match_by_time
+from services.evaluation.association import DEFAULT_MATCH_NS, Matches, match_by_time
+from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 
 

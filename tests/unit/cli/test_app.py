@@ -185,7 +185,7 @@ def test_nonsense_trajectories(kinemap: Kinemap) -> None:
     Path("two.tum").write_text("0.1 0 0 0 0 0 0 1\n0.2 1 0 0 0 0 0 1\n")
     Path("good.tum").write_text("".join(f"{i} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
     Path("late.tum").write_text("".join(f"{i + 100} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
-    for name, part in (("empty", "holds no poses"), ("nan", "'nan'"), ("two", "2 poses"), ("late", "0 poses of")):
+    for name, part in (("empty", "holds no rows"), ("nan", "'nan'"), ("two", "2 poses"), ("late", "0 poses of")):
         _one_line(kinemap("evaluate", f"{name}.tum", "--truth", "good.tum"), part)
 
 

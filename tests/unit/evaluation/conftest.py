@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from services.evaluation.alignment import Similarity
-from services.evaluation.trajectory import Trajectory
+from services.formats.trajectory import Trajectory
 
 
 def _winding_drive(count: int = 120, seed: int = 3, name: str = "truth") -> Trajectory:

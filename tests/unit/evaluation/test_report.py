@@ -29,7 +29,7 @@ from services.evaluation.report import (
 from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import NO_MAP, SessionLog
 from services.evaluation.summary import summary_rows
-from services.evaluation.trajectory import Trajectory
+from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 
 Drive = Callable[..., Trajectory]

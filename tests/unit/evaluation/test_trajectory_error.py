@@ -10,9 +10,9 @@ from evo.core.trajectory import PoseTrajectory3D
 from scipy.spatial.transform import Rotation
 
 from services.evaluation.alignment import Alignment, Similarity
-from services.evaluation.trajectory import Trajectory
 from services.evaluation.trajectory_error import trajectory_error
 from services.evaluation.trajectory_files import read_trajectory
+from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 
 Drive = Callable[..., Trajectory]

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from services.evaluation.trajectory import Trajectory, match_by_time
+from services.evaluation.association import match_by_time
+from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 
 Drive = Callable[..., Trajectory]
