@@ -10,7 +10,7 @@ from typing import Literal, get_args, get_origin, get_type_hints
 
 from services.runtime.errors import InputError
 
-WorldName = Literal["street"]
+WorldName = Literal["street", "town", "corridor"]
 Lens = Literal["pinhole", "radial", "fisheye"]
 Light = Literal["noon", "low_sun", "overcast", "dusk"]
 

@@ -11,7 +11,7 @@ class SimulatorConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    world: Literal["street"] = Field("street", description="what is driven through")
+    world: Literal["street", "town", "corridor"] = Field("street", description="what is driven through")
     seed: int = Field(7, ge=0, description="equal seeds give equal bytes, frame by frame")
     traffic_seed: int | None = Field(None, ge=0, description="the same place with other traffic")
     frames: int = Field(320, ge=1, description="frames in the drive")

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Widths of the town's streets, metres from the centre line; traffic keeps to the right.
+
+The loop has two lanes each way and a row of bays on both sides; a side street has one lane each way.
+"""
+
+LANE_WIDTH_M = 3.25
+LANE_CENTRES_M = (0.5 * LANE_WIDTH_M, 1.5 * LANE_WIDTH_M)
+"""Inner and outer lane; to the right of the centre line (negative n) in the direction of s, to the left against it."""
+BAY_CENTRE_M = 2.0 * LANE_WIDTH_M + 1.1
+KERB_M = 2.0 * LANE_WIDTH_M + 2.2
+PAVEMENT_EDGE_M = KERB_M + 3.5
+KERB_HEIGHT_M = 0.12
+
+SIDE_LANE_CENTRE_M = 1.65
+SIDE_KERB_M = 3.6
+SIDE_PAVEMENT_EDGE_M = SIDE_KERB_M + 2.4
