@@ -27,6 +27,7 @@ from schemas.proto.kinemap import camera_pb2
 from schemas.records.camera import (
     CameraCalibration,
     DepthImage,
+    DistortionModel,
     EndOfInput,
     FrameManifest,
     Image,
@@ -35,6 +36,7 @@ from schemas.records.camera import (
     TruePose,
 )
 
+_COEFFICIENTS: dict[DistortionModel, int] = {"plumb_bob": 5, "kannala_brandt": 4}
 _ENCODINGS: dict[str, tuple[str, int]] = {"mono8": ("u1", 1), "bgr8": ("u1", 3), "32FC1": ("<f4", 1)}
 
 
@@ -99,8 +101,8 @@ def calibration_to_message(record: CameraCalibration) -> CameraCalibrationMessag
         frame_id=record.frame_id,
         width=record.width,
         height=record.height,
-        distortion_model="plumb_bob",
-        D=record.distortion or (0.0,) * 5,
+        distortion_model=record.distortion_model,
+        D=record.distortion or (0.0,) * _COEFFICIENTS[record.distortion_model],
         K=record.intrinsics.ravel().tolist(),
         R=np.eye(3).ravel().tolist(),
         P=projection.ravel().tolist(),
@@ -109,6 +111,9 @@ def calibration_to_message(record: CameraCalibration) -> CameraCalibrationMessag
 
 def calibration_to_record(message: CameraCalibrationMessage) -> CameraCalibration:
     distortion = tuple(message.D)
+    model = next((known for known in _COEFFICIENTS if known == message.distortion_model), None)
+    if model is None:
+        raise ValueError(f"distortion_model {message.distortion_model!r}, expected one of {', '.join(_COEFFICIENTS)}")
     return CameraCalibration(
         nanoseconds_of(message.timestamp),
         message.width,
@@ -117,6 +122,7 @@ def calibration_to_record(message: CameraCalibrationMessage) -> CameraCalibratio
         distortion if any(distortion) else (),
         vector_of("P", message.P, 12).reshape(3, 4),
         message.frame_id,
+        model,
     )
 
 
@@ -159,6 +165,8 @@ def true_instances_to_message(record: TrueInstances) -> camera_pb2.TrueInstances
                 velocity_m_s=o.velocity_m_s,
                 position_m=o.position_m,
                 box_px=o.box_px,
+                heading_rad=o.heading_rad,
+                size_m=o.size_m or (),
             )
             for o in record.objects
         ],
@@ -181,6 +189,8 @@ def true_instances_to_record(message: camera_pb2.TrueInstances) -> TrueInstances
                 xyz("velocity_m_s", o.velocity_m_s),
                 xyz("position_m", o.position_m),
                 box_of(o.box_px),
+                o.heading_rad,
+                xyz("size_m", o.size_m) if o.size_m else None,
             )
             for o in message.objects
         ),

@@ -2,9 +2,12 @@
 """What the camera gives: images, calibration, and truth where there is some."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+
+DistortionModel = Literal["plumb_bob", "kannala_brandt"]
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class DepthImage:
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """A pinhole camera."""
+    """A camera: pinhole, or with the distortion of a lens."""
 
     timestamp_ns: int
     width: int
@@ -35,10 +38,11 @@ class CameraCalibration:
     intrinsics: npt.NDArray[np.float64]
     """(3, 3), px"""
     distortion: tuple[float, ...] = ()
-    """k1, k2, p1, p2, k3 (OpenCV's plumb_bob); empty for a rectified image"""
+    """plumb_bob: k1, k2, p1, p2, k3; kannala_brandt: k1, k2, k3, k4; as OpenCV has them; empty for a rectified image"""
     projection: npt.NDArray[np.float64] | None = None
     """(3, 4) of the rectified pair; for the right camera, [0, 3] is -fx * baseline_m"""
     frame_id: str = "camera"
+    distortion_model: DistortionModel = "plumb_bob"
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,9 @@ class TrueObject:
     velocity_m_s: tuple[float, float, float]
     position_m: tuple[float, float, float]
     box_px: tuple[float, float, float, float]
+    heading_rad: float = 0.0
+    size_m: tuple[float, float, float] | None = None
+    """length, width, height of the cuboid round `position_m`; None where it is not known"""
 
 
 @dataclass(frozen=True)

@@ -91,7 +91,11 @@ class SceneMotion:
 
         field = self._flow.previous_from_current(grey, before.grey)
         masks = carry_masks(before.masks, field.flow) if segmented.skipped else _fresh(segmented)
-        camera = PinholeCamera(np.asarray(calibration.intrinsics, dtype=np.float64), calibration.distortion)
+        camera = PinholeCamera(
+            np.asarray(calibration.intrinsics, dtype=np.float64),
+            calibration.distortion,
+            fisheye=calibration.distortion_model == "kannala_brandt",
+        )
         samples = sample_flow(field, masks.labels, camera, self._options.sampling)
         background = self._background(samples, masks)
         ego = self._ego.estimate(samples, background, before.motion)

@@ -12,10 +12,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PinholeCamera:
-    """`intrinsics` (3, 3) in px and OpenCV's `distortion` (k1, k2, p1, p2, k3, or none)."""
+    """`intrinsics` (3, 3) in px and OpenCV's `distortion`: k1, k2, p1, p2, k3, or k1 to k4 of a fisheye, or none."""
 
     intrinsics: FloatArray
     distortion: tuple[float, ...] = ()
+    fisheye: bool = False
 
     @property
     def focal_px(self) -> float:
@@ -26,7 +27,8 @@ class PinholeCamera:
         """Normalised, undistorted image coordinates (N, 2) of `pixels` (N, 2)."""
         if any(self.distortion):
             points = np.ascontiguousarray(pixels, dtype=np.float64).reshape(-1, 1, 2)
-            undistorted = cv2.undistortPoints(points, self.intrinsics, np.array(self.distortion))
+            undistort = cv2.fisheye.undistortPoints if self.fisheye else cv2.undistortPoints
+            undistorted = undistort(points, self.intrinsics, np.array(self.distortion))
             return np.asarray(undistorted.reshape(-1, 2), dtype=np.float64)
         focal = np.array([self.intrinsics[0, 0], self.intrinsics[1, 1]])
         return np.asarray((pixels - self.intrinsics[:2, 2]) / focal, dtype=np.float64)

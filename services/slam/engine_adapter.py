@@ -132,6 +132,8 @@ def _input_errors() -> Iterator[None]:
 
 
 def _camera_model(calibration: CameraCalibration) -> _engine.CameraModel:
+    if calibration.distortion and calibration.distortion_model != "plumb_bob":
+        raise InputError(f"lens {calibration.distortion_model}: expected plumb_bob, or images without distortion")
     k = calibration.intrinsics
     return _engine.CameraModel(
         calibration.width,

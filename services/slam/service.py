@@ -137,9 +137,9 @@ class SlamService(FrameService):
 
 
 def _same_camera(one: CameraCalibration, other: CameraCalibration) -> bool:
-    return (
-        (one.width, one.height, one.distortion) == (other.width, other.height, other.distortion)
-    ) and np.array_equal(one.intrinsics, other.intrinsics)
+    names = ("width", "height", "distortion", "distortion_model")
+    same = all(getattr(one, name) == getattr(other, name) for name in names)
+    return same and np.array_equal(one.intrinsics, other.intrinsics)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ _sym_db = _symbol_database.Default()
 from schemas.proto.kinemap import label_image_pb2 as schemas_dot_proto_dot_kinemap_dot_label__image__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\"schemas/proto/kinemap/camera.proto\x12\x07kinemap\x1a\'schemas/proto/kinemap/label_image.proto\"\x90\x01\n\rFrameManifest\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\x12\n\nframe_name\x18\x04 \x01(\t\x12\x0e\n\x06topics\x18\x05 \x03(\t\x12\x13\n\x0b\x66rame_count\x18\x06 \x01(\x03\x12\x0f\n\x07rate_hz\x18\x07 \x01(\x01\"H\n\nEndOfInput\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12\x13\n\x0b\x66rame_count\x18\x03 \x01(\x03\"}\n\nTrueObject\x12\x13\n\x0binstance_id\x18\x01 \x01(\r\x12\x10\n\x08\x63\x61tegory\x18\x02 \x01(\t\x12\x0e\n\x06moving\x18\x03 \x01(\x08\x12\x14\n\x0cvelocity_m_s\x18\x04 \x03(\x01\x12\x12\n\nposition_m\x18\x05 \x03(\x01\x12\x0e\n\x06\x62ox_px\x18\x06 \x03(\x02\"\x81\x01\n\rTrueInstances\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12#\n\x06labels\x18\x03 \x01(\x0b\x32\x13.kinemap.LabelImage\x12$\n\x07objects\x18\x04 \x03(\x0b\x32\x13.kinemap.TrueObjectb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\"schemas/proto/kinemap/camera.proto\x12\x07kinemap\x1a\'schemas/proto/kinemap/label_image.proto\"\x90\x01\n\rFrameManifest\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12\x0e\n\x06source\x18\x03 \x01(\t\x12\x12\n\nframe_name\x18\x04 \x01(\t\x12\x0e\n\x06topics\x18\x05 \x03(\t\x12\x13\n\x0b\x66rame_count\x18\x06 \x01(\x03\x12\x0f\n\x07rate_hz\x18\x07 \x01(\x01\"H\n\nEndOfInput\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12\x13\n\x0b\x66rame_count\x18\x03 \x01(\x03\"\xa2\x01\n\nTrueObject\x12\x13\n\x0binstance_id\x18\x01 \x01(\r\x12\x10\n\x08\x63\x61tegory\x18\x02 \x01(\t\x12\x0e\n\x06moving\x18\x03 \x01(\x08\x12\x14\n\x0cvelocity_m_s\x18\x04 \x03(\x01\x12\x12\n\nposition_m\x18\x05 \x03(\x01\x12\x0e\n\x06\x62ox_px\x18\x06 \x03(\x02\x12\x13\n\x0bheading_rad\x18\x07 \x01(\x01\x12\x0e\n\x06size_m\x18\x08 \x03(\x01\"\x81\x01\n\rTrueInstances\x12\x0f\n\x07version\x18\x01 \x01(\r\x12\x14\n\x0ctimestamp_ns\x18\x02 \x01(\x03\x12#\n\x06labels\x18\x03 \x01(\x0b\x32\x13.kinemap.LabelImage\x12$\n\x07objects\x18\x04 \x03(\x0b\x32\x13.kinemap.TrueObjectb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -36,8 +36,8 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_FRAMEMANIFEST']._serialized_end=233
   _globals['_ENDOFINPUT']._serialized_start=235
   _globals['_ENDOFINPUT']._serialized_end=307
-  _globals['_TRUEOBJECT']._serialized_start=309
-  _globals['_TRUEOBJECT']._serialized_end=434
-  _globals['_TRUEINSTANCES']._serialized_start=437
-  _globals['_TRUEINSTANCES']._serialized_end=566
+  _globals['_TRUEOBJECT']._serialized_start=310
+  _globals['_TRUEOBJECT']._serialized_end=472
+  _globals['_TRUEINSTANCES']._serialized_start=475
+  _globals['_TRUEINSTANCES']._serialized_end=604
 # @@protoc_insertion_point(module_scope)

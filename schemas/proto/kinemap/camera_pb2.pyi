@@ -36,20 +36,24 @@ class EndOfInput(_message.Message):
     def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., frame_count: _Optional[int] = ...) -> None: ...
 
 class TrueObject(_message.Message):
-    __slots__ = ("instance_id", "category", "moving", "velocity_m_s", "position_m", "box_px")
+    __slots__ = ("instance_id", "category", "moving", "velocity_m_s", "position_m", "box_px", "heading_rad", "size_m")
     INSTANCE_ID_FIELD_NUMBER: _ClassVar[int]
     CATEGORY_FIELD_NUMBER: _ClassVar[int]
     MOVING_FIELD_NUMBER: _ClassVar[int]
     VELOCITY_M_S_FIELD_NUMBER: _ClassVar[int]
     POSITION_M_FIELD_NUMBER: _ClassVar[int]
     BOX_PX_FIELD_NUMBER: _ClassVar[int]
+    HEADING_RAD_FIELD_NUMBER: _ClassVar[int]
+    SIZE_M_FIELD_NUMBER: _ClassVar[int]
     instance_id: int
     category: str
     moving: bool
     velocity_m_s: _containers.RepeatedScalarFieldContainer[float]
     position_m: _containers.RepeatedScalarFieldContainer[float]
     box_px: _containers.RepeatedScalarFieldContainer[float]
-    def __init__(self, instance_id: _Optional[int] = ..., category: _Optional[str] = ..., moving: _Optional[bool] = ..., velocity_m_s: _Optional[_Iterable[float]] = ..., position_m: _Optional[_Iterable[float]] = ..., box_px: _Optional[_Iterable[float]] = ...) -> None: ...
+    heading_rad: float
+    size_m: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, instance_id: _Optional[int] = ..., category: _Optional[str] = ..., moving: _Optional[bool] = ..., velocity_m_s: _Optional[_Iterable[float]] = ..., position_m: _Optional[_Iterable[float]] = ..., box_px: _Optional[_Iterable[float]] = ..., heading_rad: _Optional[float] = ..., size_m: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class TrueInstances(_message.Message):
     __slots__ = ("version", "timestamp_ns", "labels", "objects")

@@ -64,3 +64,12 @@ def test_normalise_takes_distortion_out():
         PinholeCamera(intrinsics, (k1, 0.0, 0.0, 0.0, 0.0)).normalise(pixels), straight, atol=1e-4
     )
     np.testing.assert_allclose(PinholeCamera(intrinsics).normalise(pixels), bent, atol=1e-12)
+
+
+def test_normalise_takes_a_fisheye_out():
+    intrinsics = np.array([[400.0, 0.0, 320.0], [0.0, 400.0, 240.0], [0.0, 0.0, 1.0]])
+    angle, k1 = 0.9, -0.05
+    bent = angle * (1.0 + k1 * angle**2)
+    pixels = np.array([[320.0 + 400.0 * bent, 240.0]])
+    camera = PinholeCamera(intrinsics, (k1, 0.0, 0.0, 0.0), fisheye=True)
+    np.testing.assert_allclose(camera.normalise(pixels), [[np.tan(angle), 0.0]], atol=1e-6)

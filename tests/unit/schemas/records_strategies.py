@@ -53,9 +53,12 @@ def map_updates(draw: st.DrawFn) -> r.MapUpdate:
 def _calibrations() -> st.SearchStrategy[r.CameraCalibration]:
     distortions = st.one_of(st.just(()), st.tuples(*[st.floats(0.01, 1.0)] * 5))
     sides = st.integers(1, 5000)
-    return st.builds(
-        r.CameraCalibration, TIMES, sides, sides, arrays("f8", (3, 3)), distortions, arrays("f8", (3, 4)), WORDS
+    lenses = st.one_of(
+        st.tuples(distortions, st.just("plumb_bob")),
+        st.tuples(st.tuples(*[st.floats(0.01, 1.0)] * 4), st.just("kannala_brandt")),
     )
+    shapes = st.tuples(TIMES, sides, sides, arrays("f8", (3, 3)), arrays("f8", (3, 4)), WORDS)
+    return st.builds(lambda shape, lens: r.CameraCalibration(*shape[:4], lens[0], *shape[4:], lens[1]), shapes, lenses)
 
 
 def _tracked_frames() -> st.SearchStrategy[r.TrackedFrame]:
@@ -85,7 +88,7 @@ OBJECT_TRACKS = st.builds(
     r.ObjectTrack, IDS, WORDS, SINGLES, st.sampled_from(r.MotionState), NUMBERS, BOXES, st.integers(0, 9999)
 )
 INSTANCES = st.builds(r.Instance, IDS, WORDS, SINGLES, BOXES)
-TRUE_OBJECTS = st.builds(r.TrueObject, IDS, WORDS, st.booleans(), TRIPLES, TRIPLES, BOXES)
+TRUE_OBJECTS = st.builds(r.TrueObject, IDS, WORDS, st.booleans(), TRIPLES, TRIPLES, BOXES, NUMBERS, st.none() | TRIPLES)
 INSTANCE_MOTIONS = st.builds(
     r.InstanceMotion,
     IDS,

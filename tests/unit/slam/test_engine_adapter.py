@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The engine through its adapter: what it refuses, and what it makes of a street seen from a moving camera."""
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -224,3 +226,9 @@ class TestWhatItRefuses:
     def test_a_camera_without_a_focal_length(self) -> None:
         with pytest.raises(InputError, match="focal length fx, got 0"):
             SlamEngine(CameraCalibration(0, 640, 480, np.diag([0.0, 500.0, 1.0])))
+
+
+def test_a_lens_the_engine_does_not_know_is_refused(room: TexturedRoom) -> None:
+    fisheye = replace(calibration(room), distortion=(0.1, 0.0, 0.0, 0.0), distortion_model="kannala_brandt")
+    with pytest.raises(InputError, match="lens kannala_brandt: expected plumb_bob"):
+        SlamEngine(fisheye)
