@@ -52,8 +52,8 @@ def align(source: Points, target: Points, alignment: Alignment) -> Similarity:
 
     Umeyama, "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991, as in
     algorithm 6 of the thesis; with `Alignment.SE3` the scale stays 1. Points on one line leave the rotation about that
-    line free, which changes no distance between them. Raises InputError for fewer than 3 pairs or for points that
-    are all at one place.
+    line free, which changes no distance between them. Raises InputError for fewer than 3 pairs, for a source that is
+    all at one place, and with `Alignment.SIM3` for such a target, on which the scale would be 0.
     """
     if alignment is Alignment.NONE:
         return Similarity.identity()
@@ -61,9 +61,11 @@ def align(source: Points, target: Points, alignment: Alignment) -> Similarity:
         raise InputError(f"{len(source)} poses in common with the ground truth, expected at least {MINIMUM_POSES}")
     source_mean, target_mean = source.mean(axis=0), target.mean(axis=0)
     source_centred, target_centred = source - source_mean, target - target_mean
-    source_variance = float(np.square(source_centred).sum(axis=1).mean())
-    if source_variance <= np.finfo(np.float64).eps * (1.0 + float(np.square(source_mean).sum())):
+    source_variance = _variance(source_centred)
+    if _is_one_place(source_variance, source_mean):
         raise InputError(f"all {len(source)} estimated positions are at one place: nothing to align")
+    if alignment is Alignment.SIM3 and _is_one_place(_variance(target_centred), target_mean):
+        raise InputError(f"all {len(target)} true positions are at one place: they give no scale")
     covariance = target_centred.T @ source_centred / len(source)
     u, singular_values, vt = np.linalg.svd(covariance)
     reflection_guard = np.ones(3)
@@ -74,3 +76,11 @@ def align(source: Points, target: Points, alignment: Alignment) -> Similarity:
     if alignment is Alignment.SIM3:
         scale = float(singular_values @ reflection_guard) / source_variance
     return Similarity(rotation, target_mean - scale * rotation @ source_mean, scale)
+
+
+def _variance(centred: Points) -> float:
+    return float(np.square(centred).sum(axis=1).mean())
+
+
+def _is_one_place(variance: float, mean: Points) -> bool:
+    return variance <= np.finfo(np.float64).eps * (1.0 + float(np.square(mean).sum()))

@@ -12,9 +12,10 @@ import numpy as np
 
 from schemas.records import DensityLevel, TrackingState
 from services.evaluation.alignment import Alignment
+from services.evaluation.error_description import describe_error
 from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
 from services.evaluation.session_log import SessionLog
-from services.evaluation.trajectory_error import TrajectoryError, trajectory_error
+from services.evaluation.trajectory_error import trajectory_error
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError, KinemapError
 
@@ -76,21 +77,6 @@ def read_report(path: Path) -> Report:
     if version != REPORT_VERSION:
         raise InputError(f"{path}: report of version {version}, expected {REPORT_VERSION}")
     return dict(report)
-
-
-def describe_error(error: TrajectoryError) -> Report:
-    """One error as the report writes it, coverage beside it."""
-    return {
-        "alignment": error.alignment.value,
-        "frames": error.frames,
-        "poses": len(error.errors_m),
-        "coverage": error.coverage,
-        "scale": error.truth_from_estimate.scale,
-        "ate_m": asdict(error.absolute_m),
-        "rpe_frames": error.delta_frames,
-        "rpe_m": asdict(error.relative_m) if error.relative_m else None,
-        "rpe_deg": asdict(error.relative_deg) if error.relative_deg else None,
-    }
 
 
 def stage_times(log: SessionLog, services: Mapping[str, ServiceUsage]) -> dict[str, dict[str, float]]:

@@ -28,7 +28,7 @@ def trajectory(
     """Errors of a trajectory, coverage beside them."""
     if truth is None:
         raise InputError(f"{estimate}: expected --truth with the true trajectory, or the folder of a run instead")
-    from services.evaluation.report import describe_error
+    from services.evaluation.error_description import describe_error
     from services.evaluation.trajectory_error import trajectory_error
     from services.evaluation.trajectory_files import read_trajectory
 

@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 import copy
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
-from evo.core import metrics, sync
-from evo.core.trajectory import PoseTrajectory3D
 from scipy.spatial.transform import Rotation
 
 from services.evaluation.alignment import Alignment, Similarity
+from services.evaluation.error_statistics import ErrorStatistics
+from services.evaluation.relative_error import path_pairs
 from services.evaluation.trajectory_error import trajectory_error
 from services.evaluation.trajectory_files import read_trajectory
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
+
+pytest.importorskip("evo", reason="evo is the reference here; it is GPL, and installed for tests only")
+from evo.core import metrics, sync
+from evo.core.trajectory import PoseTrajectory3D
 
 Drive = Callable[..., Trajectory]
 
@@ -32,12 +37,29 @@ def test_a_perfect_estimate_in_another_frame_has_no_error(winding_drive: Drive, 
     truth = winding_drive()
     error = trajectory_error(seen_from_elsewhere(truth, ELSEWHERE), truth)
     assert error.absolute_m.max < 1e-9
-    assert error.relative_m is not None
-    assert error.relative_m.max < 1e-9
-    assert error.relative_deg is not None
-    assert error.relative_deg.max < 1e-4
+    assert error.by_frames.translation_m is not None
+    assert error.by_frames.translation_m.max < 1e-9
+    assert error.by_frames.rotation_deg is not None
+    assert error.by_frames.rotation_deg.max < 1e-4
     assert error.truth_from_estimate.scale == pytest.approx(7.3)
     assert error.coverage == 1.0
+
+
+def _assert_statistics(ours: ErrorStatistics | None, theirs: metrics.PE) -> None:
+    assert ours is not None
+    expected = theirs.get_all_statistics()
+    for name, value in asdict(ours).items():
+        assert value == pytest.approx(expected[name], abs=1e-6), name
+
+
+def _aligned_in_evo(
+    estimate: Trajectory, truth: Trajectory, alignment: Alignment
+) -> tuple[PoseTrajectory3D, PoseTrajectory3D]:
+    reference, other = sync.associate_trajectories(_evo(truth), _evo(estimate), max_diff=0.01)
+    other = copy.deepcopy(other)
+    if alignment is not Alignment.NONE:
+        other.align(reference, correct_scale=alignment is Alignment.SIM3)
+    return reference, other
 
 
 @pytest.mark.parametrize("alignment", list(Alignment))
@@ -48,48 +70,48 @@ def test_agrees_with_evo(alignment: Alignment, seed: int, winding_drive: Drive, 
     estimate = seen_from_elsewhere(truth, ELSEWHERE, noise_m=0.4, seed=seed)
     estimate = _part(estimate, np.flatnonzero(np.arange(len(truth)) % 7 != 3), shift_ns=4_000_000)
     error = trajectory_error(estimate, truth, alignment)
-
-    reference, other = sync.associate_trajectories(_evo(truth), _evo(estimate), max_diff=0.01)
-    other = copy.deepcopy(other)
-    if alignment is not Alignment.NONE:
-        other.align(reference, correct_scale=alignment is Alignment.SIM3)
     ape = metrics.APE(metrics.PoseRelation.translation_part)
-    ape.process_data((reference, other))
-    for name, value in (
-        ("rmse", error.absolute_m.rmse),
-        ("mean", error.absolute_m.mean),
-        ("max", error.absolute_m.max),
-    ):
-        assert value == pytest.approx(ape.get_all_statistics()[name], abs=1e-6)
-    assert error.absolute_m.median == pytest.approx(ape.get_statistic(metrics.StatisticsType.median), abs=1e-6)
+    ape.process_data(_aligned_in_evo(estimate, truth, alignment))
+    _assert_statistics(error.absolute_m, ape)
 
 
-def test_relative_error_agrees_with_evo(winding_drive: Drive, seen_from_elsewhere: Drive) -> None:
-    truth = winding_drive()
+@pytest.mark.parametrize("alignment", list(Alignment))
+@pytest.mark.parametrize("unit", [metrics.Unit.frames, metrics.Unit.meters])
+@pytest.mark.parametrize("delta", [1, 5, 20])
+def test_relative_error_agrees_with_evo(
+    delta: int, unit: metrics.Unit, alignment: Alignment, winding_drive: Drive, seen_from_elsewhere: Drive
+) -> None:
+    truth = winding_drive(seed=delta)
     estimate = seen_from_elsewhere(truth, ELSEWHERE, noise_m=0.1)
-    error = trajectory_error(estimate, truth, Alignment.SIM3, delta_frames=5)
-    aligned = _evo(estimate)
-    aligned.align(_evo(truth), correct_scale=True)
-    for relation, ours in (
-        (metrics.PoseRelation.translation_part, error.relative_m),
-        (metrics.PoseRelation.rotation_angle_deg, error.relative_deg),
+    error = trajectory_error(estimate, truth, alignment, delta_frames=delta, delta_m=float(delta))
+    ours = error.by_frames if unit is metrics.Unit.frames else error.by_path
+    for relation, statistics in (
+        (metrics.PoseRelation.translation_part, ours.translation_m),
+        (metrics.PoseRelation.rotation_angle_deg, ours.rotation_deg),
     ):
-        rpe = metrics.RPE(relation, delta=5, delta_unit=metrics.Unit.frames, all_pairs=True)
-        rpe.process_data((_evo(truth), aligned))
-        assert ours is not None
-        assert ours.rmse == pytest.approx(rpe.get_statistic(metrics.StatisticsType.rmse), abs=1e-6)
+        rpe = metrics.RPE(relation, delta=delta, delta_unit=unit, all_pairs=True, pairs_from_reference=True)
+        rpe.process_data(_aligned_in_evo(estimate, truth, alignment))
+        assert ours.pairs == ours.possible == len(rpe.error)
+        _assert_statistics(statistics, rpe)
 
 
-def test_real_poses_agree_with_evo(shared_data: Path, seen_from_elsewhere: Drive) -> None:
+@pytest.mark.parametrize("alignment", list(Alignment))
+def test_real_poses_agree_with_evo(shared_data: Path, alignment: Alignment, seen_from_elsewhere: Drive) -> None:
     folder = shared_data / "kitti"
     truth = read_trajectory(folder / "poses/03.txt", times=folder / "sequences/03/times.txt")
     estimate = seen_from_elsewhere(truth, ELSEWHERE, noise_m=1.0)
-    aligned = _evo(estimate)
-    aligned.align(_evo(truth), correct_scale=True)
+    error = trajectory_error(estimate, truth, alignment, delta_m=25.0)
+    pair = _aligned_in_evo(estimate, truth, alignment)
     ape = metrics.APE(metrics.PoseRelation.translation_part)
-    ape.process_data((_evo(truth), aligned))
-    ours = trajectory_error(estimate, truth).absolute_m.rmse
-    assert ours == pytest.approx(ape.get_statistic(metrics.StatisticsType.rmse), abs=1e-6)
+    ape.process_data(pair)
+    _assert_statistics(error.absolute_m, ape)
+    for delta, unit, ours in (
+        (1, metrics.Unit.frames, error.by_frames.translation_m),
+        (25, metrics.Unit.meters, error.by_path.translation_m),
+    ):
+        rpe = metrics.RPE(metrics.PoseRelation.translation_part, delta, unit, all_pairs=True, pairs_from_reference=True)
+        rpe.process_data(pair)
+        _assert_statistics(ours, rpe)
 
 
 def test_coverage_says_what_was_left_out(winding_drive: Drive) -> None:
@@ -105,8 +127,8 @@ def test_relative_error_skips_pairs_across_lost_frames(winding_drive: Drive) -> 
     moved = truth.world_from_camera[rows].copy()
     moved[20:, :3, 3] += 50.0
     error = trajectory_error(Trajectory(truth.timestamp_ns[rows], moved), truth, Alignment.NONE)
-    assert error.relative_m is not None
-    assert error.relative_m.max < 1e-9
+    assert error.by_frames.translation_m is not None
+    assert error.by_frames.translation_m.max < 1e-9
     assert error.absolute_m.max > 80.0
 
 
@@ -132,3 +154,43 @@ def test_standing_still_is_refused(winding_drive: Drive) -> None:
     still = Trajectory(truth.timestamp_ns, np.tile(np.eye(4), (len(truth), 1, 1)))
     with pytest.raises(InputError, match="at one place"):
         trajectory_error(still, truth)
+
+
+def test_a_truth_that_stands_gives_no_scale(winding_drive: Drive) -> None:
+    drive = winding_drive()
+    still = Trajectory(drive.timestamp_ns, np.tile(np.eye(4), (len(drive), 1, 1)), "still")
+    with pytest.raises(InputError, match="true positions are at one place: they give no scale"):
+        trajectory_error(drive, still)
+    assert trajectory_error(drive, still, Alignment.SE3).absolute_m.max > 1.0
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ({"delta_frames": 0}, "over 0 frames, expected at least 1"),
+        ({"delta_m": float("nan")}, "over nan m, expected a number above 0"),
+        ({"rate_hz": 0.0}, "rate 0 Hz"),
+        ({"frames": 5}, "5 frames in the input, expected at least the 120"),
+    ],
+)
+def test_options_out_of_range_are_refused(options: dict[str, float], expected: str, winding_drive: Drive) -> None:
+    with pytest.raises(InputError, match=expected):
+        trajectory_error(winding_drive(), winding_drive(), **options)  # type: ignore[arg-type]
+
+
+def test_a_truth_denser_than_the_frames_says_what_was_lost(winding_drive: Drive) -> None:
+    truth = winding_drive(201)  # at 10 Hz, for frames at 2 Hz: every fifth true pose is a frame
+    frames = np.arange(0, 201, 5)
+    tracked = frames[(frames < 50) | (frames >= 100)]
+    error = trajectory_error(_part(truth, tracked), truth, Alignment.NONE, rate_hz=2.0)
+    assert (error.frames, len(error.errors_m)) == (41, 31)
+    assert (error.by_frames.possible, error.by_frames.pairs) == (40, 29)
+    assert error.by_frames.translation_m is not None
+    assert error.by_frames.translation_m.max < 1e-9
+
+
+def test_a_camera_that_stands_pairs_with_the_first_frame_of_the_standing() -> None:
+    path_m = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0])
+    assert path_pairs(path_m, 2.0).tolist() == [[0, 2], [1, 5]]
+    assert path_pairs(path_m, 1.0).tolist() == [[0, 1], [1, 2], [2, 5], [3, 5], [4, 5]]
+    assert path_pairs(path_m, 9.0).tolist() == []
