@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from services.evaluation.reference_frames import ReferenceFrames
-from services.evaluation.relative_error import relative_motions
 
 SEGMENT_LENGTHS_M = (100, 200, 300, 400, 500, 600, 700, 800)
 FIRST_FRAME_STEP = 10
@@ -57,7 +56,7 @@ def segment_errors(frames: ReferenceFrames, aligned: npt.NDArray[np.float64]) ->
     for length_m in SEGMENT_LENGTHS_M:
         pairs = _segments(frames.path_m, length_m)
         tracked = frames.tracked(pairs)
-        motion = relative_motions(frames, aligned, tracked)
+        motion = _pose_errors(frames, aligned, tracked)
         translation = np.linalg.norm(motion[:, :3, 3], axis=1) / length_m
         cosine = 0.5 * (np.trace(motion[:, :3, :3], axis1=1, axis2=2) - 1.0)
         rotation = np.arccos(cosine.clip(-1.0, 1.0)) / length_m
@@ -74,6 +73,17 @@ def _segments(path_m: npt.NDArray[np.float64], length_m: int) -> npt.NDArray[np.
     last = np.searchsorted(path_m, path_m[first] + length_m, side="right")
     inside = last < len(path_m)
     return np.stack((first[inside], last[inside]), axis=1)
+
+
+def _pose_errors(
+    frames: ReferenceFrames, aligned: npt.NDArray[np.float64], pairs: npt.NDArray[np.intp]
+) -> npt.NDArray[np.float64]:
+    # The kit's own order, and its inverse of a general matrix: poses of six digits are no rotations to the last of them.
+    true_motion = np.linalg.inv(frames.world_from_camera[pairs[:, 0]]) @ frames.world_from_camera[pairs[:, 1]]
+    rows = frames.row[pairs]
+    estimated_motion = np.linalg.inv(aligned[rows[:, 0]]) @ aligned[rows[:, 1]]
+    errors: npt.NDArray[np.float64] = np.linalg.inv(estimated_motion) @ true_motion
+    return errors
 
 
 def _mean(

@@ -4,15 +4,13 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from schemas.records import Density, DensityLevel, MotionState
-from services.evaluation.ground_plane import GroundPlane, ground_plane
+from services.evaluation.figure import finish_top_view, new_figure, save_figure
+from services.evaluation.ground_plane import ground_plane
 from services.evaluation.map_points import Points
 from services.evaluation.trajectory_error import TrajectoryError
 from services.formats.trajectory import Trajectory
@@ -39,7 +37,7 @@ def plot_trajectory(
     estimate: Trajectory, path: Path, truth: Trajectory | None = None, error: TrajectoryError | None = None
 ) -> None:
     """Top view of the estimate, brought onto the truth where there is one."""
-    figure = _figure()
+    figure = new_figure()
     axes = figure.add_subplot()
     poses = estimate.world_from_camera if error is None else error.truth_from_estimate.poses(estimate.world_from_camera)
     plane = ground_plane(truth.world_from_camera if truth is not None else poses)
@@ -54,13 +52,13 @@ def plot_trajectory(
     else:
         covered = f"{error.coverage:.1%} of {error.frames} frames"
         axes.set_title(f"ATE RMSE {error.absolute_m.rmse:.3f} m ({error.alignment.value}), {covered}")
-    _finish_top_view(axes, plane, unit)
-    _save(figure, path)
+    finish_top_view(axes, plane, unit)
+    save_figure(figure, path)
 
 
 def plot_map(points: Points, trajectory: Trajectory | None, path: Path, unit: str = "map units") -> None:
     """Top view of the map in green, yellow and red, with the camera's path."""
-    figure = _figure()
+    figure = new_figure()
     axes = figure.add_subplot()
     plane = ground_plane(trajectory.world_from_camera if trajectory is not None else np.eye(4)[None])
     projected = plane.project(points.position)
@@ -87,13 +85,13 @@ def plot_map(points: Points, trajectory: Trajectory | None, path: Path, unit: st
         axes.plot(*path_in_plane.T, color="black", linewidth=1.2, label="camera")
         _limit_to(axes, path_in_plane, projected)
     axes.set_title(f"map: {len(points.landmark_id)} landmarks")
-    _finish_top_view(axes, plane, unit, marker_scale=5.0)
-    _save(figure, path)
+    finish_top_view(axes, plane, unit, marker_scale=5.0)
+    save_figure(figure, path)
 
 
 def plot_stage_times(stage_ms: Mapping[str, Mapping[str, float]], path: Path) -> None:
     """Milliseconds a frame of every stage: the bar is the median, the line reaches to p95."""
-    figure = _figure(height_in=1.2 + 0.32 * max(len(stage_ms), 1))
+    figure = new_figure(height_in=1.2 + 0.32 * max(len(stage_ms), 1))
     axes = figure.add_subplot()
     names = list(stage_ms)
     medians = np.array([stage_ms[name]["p50"] for name in names])
@@ -104,12 +102,12 @@ def plot_stage_times(stage_ms: Mapping[str, Mapping[str, float]], path: Path) ->
     axes.invert_yaxis()
     axes.set_xlabel("ms a frame (median, line to p95)")
     axes.set_title("time of every stage")
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def plot_density(densities: Mapping[int, Density], path: Path) -> None:
     """Moving points around the camera over the frames, coloured by level."""
-    figure = _figure(height_in=3.6)
+    figure = new_figure(height_in=3.6)
     axes = figure.add_subplot()
     frames = np.array(sorted(densities), dtype=np.int64)
     points = np.array([densities[frame].moving_points for frame in frames.tolist()])
@@ -132,13 +130,7 @@ def plot_density(densities: Mapping[int, Density], path: Path) -> None:
     axes.set_ylabel("moving points around the camera")
     axes.set_title("density")
     axes.legend(loc="upper left", fontsize=8)
-    _save(figure, path)
-
-
-def _figure(height_in: float = 7.0) -> Figure:
-    figure = Figure(figsize=(9.0, height_in), dpi=130, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
+    save_figure(figure, path)
 
 
 def _limit_to(axes: Axes, camera: npt.NDArray[np.float64], points: npt.NDArray[np.float64]) -> None:
@@ -155,16 +147,3 @@ def _limit_to(axes: Axes, camera: npt.NDArray[np.float64], points: npt.NDArray[n
     margin = _MARGIN * float((high - low).max())
     axes.set_xlim(low[0] - margin, high[0] + margin)
     axes.set_ylim(low[1] - margin, high[1] + margin)
-
-
-def _finish_top_view(axes: Axes, plane: GroundPlane, unit: str, marker_scale: float = 1.0) -> None:
-    axes.set_aspect("equal", adjustable="datalim" if axes.get_autoscale_on() else "box")
-    axes.set_xlabel(f"{plane.names[0]} [{unit}]")
-    axes.set_ylabel(f"{plane.names[1]} [{unit}]")
-    axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="best", fontsize=8, markerscale=marker_scale)
-
-
-def _save(figure: Figure, path: Path) -> None:
-    with mpl.rc_context({"svg.hashsalt": "kinemap"}):
-        figure.savefig(path, metadata={"Software": None})

@@ -69,10 +69,9 @@ def path_pairs(path_m: npt.NDArray[np.float64], delta_m: float) -> npt.NDArray[n
     return np.stack((first[near], second[near]), axis=1)
 
 
-def relative_motions(
+def _motion_errors(
     frames: ReferenceFrames, aligned: npt.NDArray[np.float64], pairs: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.float64]:
-    """(P, 4, 4), what is left of each estimated motion once the true one is taken out; both frames were tracked."""
     true_motion = _inverse(frames.world_from_camera[pairs[:, 0]]) @ frames.world_from_camera[pairs[:, 1]]
     rows = frames.row[pairs]
     estimated_motion = _inverse(aligned[rows[:, 0]]) @ aligned[rows[:, 1]]
@@ -98,7 +97,7 @@ def _over(
     tracked = frames.tracked(pairs)
     if len(tracked) == 0:
         return RelativeError(delta, unit, len(pairs), 0, None, None)
-    difference = relative_motions(frames, aligned, tracked)
+    difference = _motion_errors(frames, aligned, tracked)
     return RelativeError(
         delta,
         unit,

@@ -58,13 +58,13 @@ def _assert_same(truth: Trajectory, estimate: Trajectory, rows: np.ndarray, poss
     assert len(expected) > 15
     overall = error.segments.overall
     assert (overall.segments, overall.possible) == (len(expected), possible)
-    assert overall.translation_percent == pytest.approx(100 * np.mean([row[1] for row in expected]), abs=1e-6)
-    assert overall.rotation_deg_per_m == pytest.approx(np.degrees(np.mean([row[2] for row in expected])), abs=1e-6)
+    assert overall.translation_percent == pytest.approx(100 * np.mean([row[1] for row in expected]), abs=1e-9)
+    assert overall.rotation_deg_per_m == pytest.approx(np.degrees(np.mean([row[2] for row in expected])), abs=1e-9)
     for of_length in error.segments.by_length:
         chosen = [row for row in expected if row[0] == of_length.length_m]
         assert of_length.segments == len(chosen)
         if chosen:
-            assert of_length.translation_percent == pytest.approx(100 * np.mean([row[1] for row in chosen]), abs=1e-6)
+            assert of_length.translation_percent == pytest.approx(100 * np.mean([row[1] for row in chosen]), abs=1e-9)
 
 
 def test_every_length_agrees_on_a_long_drive(winding_drive: Drive) -> None:
@@ -89,7 +89,7 @@ def test_of_the_alignment_only_the_scale_counts(winding_drive: Drive) -> None:
     truth = winding_drive(400)
     odometry = _drifting(truth)
     none, se3, sim3 = (trajectory_error(odometry, truth, alignment).segments.overall for alignment in Alignment)
-    assert none.translation_percent == pytest.approx(se3.translation_percent, abs=1e-6)
+    assert none.translation_percent == pytest.approx(se3.translation_percent, abs=1e-9)
     assert sim3.translation_percent != pytest.approx(se3.translation_percent, abs=1e-3)
 
 
