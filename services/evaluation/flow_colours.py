@@ -7,7 +7,7 @@ Source: Baker et al., "A Database and Evaluation Methodology for Optical Flow", 
 import numpy as np
 import numpy.typing as npt
 
-_STEPS = (("ry", 15), ("yg", 6), ("gc", 4), ("cb", 11), ("bm", 13), ("mr", 6))
+_STEPS = (("r", "y", 15), ("y", "g", 6), ("g", "c", 4), ("c", "b", 11), ("b", "m", 13), ("m", "r", 6))
 """How many hues lie between red, yellow, green, cyan, blue, magenta and red: as many as the eye can tell apart."""
 _CORNERS = {"r": (1, 0, 0), "y": (1, 1, 0), "g": (0, 1, 0), "c": (0, 1, 1), "b": (0, 0, 1), "m": (1, 0, 1)}
 _BEYOND = 0.75
@@ -17,7 +17,7 @@ _BEYOND = 0.75
 def colour_wheel() -> npt.NDArray[np.float64]:
     """The hues once round, (55, 3) red-green-blue in 0..1, beginning with red."""
     parts = []
-    for (start, end), count in _STEPS:
+    for start, end, count in _STEPS:
         share = np.arange(count)[:, None] / count
         parts.append((1.0 - share) * np.array(_CORNERS[start]) + share * np.array(_CORNERS[end]))
     return np.concatenate(parts)
@@ -32,9 +32,9 @@ def flow_colours(
     darker: red to the right, yellow down, blue and cyan to the left, magenta and violet up. Black where not `valid`.
     """
     flow = np.asarray(flow_px, dtype=np.float64)
-    known = np.isfinite(flow).all(axis=2)
+    known: npt.NDArray[np.bool_] = np.isfinite(flow).all(axis=2)
     if valid is not None:
-        known &= valid
+        known = known & valid
     flow = np.where(known[..., None], flow, 0.0)
     length = np.hypot(flow[..., 0], flow[..., 1])
     longest = float(length.max(initial=0.0)) if longest_px is None else longest_px
