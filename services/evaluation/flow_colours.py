@@ -32,7 +32,7 @@ def flow_colours(
     darker: red to the right, yellow down, blue and cyan to the left, magenta and violet up. Black where not `valid`.
     """
     flow = np.asarray(flow_px, dtype=np.float64)
-    known: npt.NDArray[np.bool_] = np.isfinite(flow).all(axis=2)
+    known: npt.NDArray[np.bool_] = np.asarray(np.isfinite(flow).all(axis=2))
     if valid is not None:
         known = known & valid
     flow = np.where(known[..., None], flow, 0.0)
