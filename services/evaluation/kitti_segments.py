@@ -78,7 +78,7 @@ def _segments(path_m: npt.NDArray[np.float64], length_m: int) -> npt.NDArray[np.
 def _pose_errors(
     frames: ReferenceFrames, aligned: npt.NDArray[np.float64], pairs: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.float64]:
-    # The kit's own order, and its inverse of a general matrix: poses of six digits are no rotations to the last of them.
+    # The kit's own order, and its inverse of a general matrix: poses of six digits are no rotations to the last.
     true_motion = np.linalg.inv(frames.world_from_camera[pairs[:, 0]]) @ frames.world_from_camera[pairs[:, 1]]
     rows = frames.row[pairs]
     estimated_motion = np.linalg.inv(aligned[rows[:, 0]]) @ aligned[rows[:, 1]]

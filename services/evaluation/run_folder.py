@@ -18,6 +18,7 @@ from services.formats.tum import write_tum
 from services.runtime.errors import InputError
 
 TRAJECTORY_NAME = "trajectory.tum"
+TRUTH_NAME = "ground_truth.tum"
 SHEET_FRAMES = 8
 
 
@@ -57,7 +58,7 @@ def _draw(
     plots.mkdir(exist_ok=True)
     truth = log.truth()
     if truth is not None:
-        write_tum(truth, folder / "ground_truth.tum")
+        write_tum(truth, folder / TRUTH_NAME)
     if trajectory is not None:
         error = _error(trajectory, truth, report)
         plot_trajectory(trajectory, plots / "trajectory.png", truth, error)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
+from services.cli.evaluate.output import print_table
 from services.cli.run_folder import CONFIG_NAME, newest_run_folder
 from services.cli.run_results import USAGE_NAME, print_summary, read_usage
 from services.evaluation.comparison import compare
@@ -40,12 +40,7 @@ def _compare(folders: list[Path]) -> None:
         if not folder.is_dir():
             raise InputError(f"{folder}: expected the folders of runs where there is more than one path")
         reports.append(read_report(folder / "report.json"))
-    table = Table(box=None, pad_edge=False)
-    for name in ("", *(folder.resolve().name for folder in folders)):
-        table.add_column(name, overflow="fold")
-    for row in compare(reports):
-        table.add_row(row.what, *row.values)
-    Console(markup=False).print(table, highlight=False)
+    print_table([folder.resolve().name for folder in folders], compare(reports))
 
 
 def _evaluate_folder(given: Path, recover: bool) -> None:

@@ -1,41 +1,81 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`kinemap evaluate trajectory`: an estimated trajectory against the true one."""
+"""`kinemap evaluate trajectory`: estimated trajectories against the true one, side by side."""
 
-import json
+import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
 from services.evaluation.alignment import Alignment
 from services.runtime.errors import InputError
 
 
 def trajectory(
-    estimate: Annotated[Path, typer.Argument(metavar="ESTIMATE", help="A trajectory in TUM or KITTI format.")],
+    estimates: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="ESTIMATE...", help="Trajectories (TUM, KITTI, EuRoC) or folders of runs, such as one a stage."
+        ),
+    ],
     *,
-    truth: Annotated[Path | None, typer.Option(help="True trajectory, TUM or KITTI.")] = None,
+    truth: Annotated[
+        Path | None, typer.Option(help="True trajectory, TUM, KITTI or EuRoC; folders of runs hold their own.")
+    ] = None,
     times: Annotated[
         Path | None, typer.Option(help="Times of a KITTI trajectory, seconds, one a line (its sequence's times.txt).")
+    ] = None,
+    sensor: Annotated[
+        Path | None, typer.Option(help="sensor.yaml of an EuRoC camera, to bring the body's true poses to it (T_BS).")
     ] = None,
     align: Annotated[Alignment, typer.Option(help="What is free of the estimate's frame.")] = Alignment.SIM3,
     frames: Annotated[
         int | None, typer.Option(min=1, help="Frames in the input, for the coverage (default: the true poses).")
     ] = None,
+    rate: Annotated[
+        float | None, typer.Option(help="Frames a second, where the truth is denser than the frames (TUM, EuRoC).")
+    ] = None,
     delta: Annotated[int, typer.Option(min=1, help="Frames that the relative error spans.")] = 1,
-    plot: Annotated[Path | None, typer.Option(help="Write a picture of both trajectories (PNG).")] = None,
+    delta_m: Annotated[float, typer.Option(help="Metres that the relative error by path spans.")] = 10.0,
+    max_difference: Annotated[
+        float, typer.Option(help="Seconds that poses of one moment may be apart in the two files.")
+    ] = 0.01,
+    json_file: JsonFlag = None,
+    plots: PlotsFlag = None,
 ) -> None:
-    """Errors of a trajectory, coverage beside them."""
-    if truth is None:
-        raise InputError(f"{estimate}: expected --truth with the true trajectory, or the folder of a run instead")
+    """ATE, RPE and KITTI's segment errors of trajectories, each with the share of the frames it speaks of."""
     from services.evaluation.error_description import describe_error
+    from services.evaluation.evaluated_trajectory import EvaluatedTrajectory, estimate_files, recorded_truth
     from services.evaluation.trajectory_error import trajectory_error
     from services.evaluation.trajectory_files import read_trajectory
+    from services.evaluation.trajectory_table import trajectory_rows
+    from services.formats.euroc import read_body_from_sensor
 
-    estimated, true = read_trajectory(estimate, times=times), read_trajectory(truth, times=times)
-    error = trajectory_error(estimated, true, align, frames=frames, delta_frames=delta)
-    print(json.dumps(describe_error(error), indent=2))
-    if plot is not None:
-        from services.evaluation.plots import plot_trajectory
+    if not (math.isfinite(max_difference) and max_difference >= 0.0):
+        raise InputError(f"--max-difference {max_difference:g}: expected seconds, 0 or more")
+    body_from_sensor = None if sensor is None else read_body_from_sensor(sensor)
+    files = estimate_files(estimates)
+    truth_file = recorded_truth(estimates) if truth is None else truth
+    true = read_trajectory(truth_file, times=times, body_from_sensor=body_from_sensor)
+    evaluated = []
+    for name, file in files.items():
+        estimated = read_trajectory(file, times=times)
+        error = trajectory_error(
+            estimated,
+            true,
+            align,
+            frames=frames,
+            rate_hz=rate,
+            delta_frames=delta,
+            delta_m=delta_m,
+            max_difference_ns=round(max_difference * 1e9),
+        )
+        evaluated.append(EvaluatedTrajectory(name, estimated, error))
+    print_table(list(files), trajectory_rows(evaluated))
+    described = [{"name": item.name, "file": str(files[item.name]), **describe_error(item.error)} for item in evaluated]
+    keep_json({"truth": str(truth_file), "estimates": described}, json_file)
+    if plots is not None:
+        from services.evaluation.trajectory_plots import plot_all
 
-        plot_trajectory(estimated, plot, true, error)
+        plot_all(evaluated, true, plots_folder(plots))

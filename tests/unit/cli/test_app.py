@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line when something is wrong: one line on standard error, an exit code, nothing lost."""
 
-import json
 import socket
 import sys
 from collections.abc import Callable
@@ -124,8 +123,6 @@ def test_a_port_in_use_is_said_before_anything_is_written(kinemap: Kinemap) -> N
         (("config", "dump", "--set", "delivery.window=0"), ("delivery.window", "greater than or equal to 1")),
         (("replay", "none.mcap"), ("none.mcap: no such file",)),
         (("replay", "none.mcap", "--speed", "nan"), ("--speed nan: expected a number above 0",)),
-        (("evaluate", "none.tum", "--truth", "none.txt"), ("none.tum: no such file",)),
-        (("evaluate", "none.tum"), ("expected --truth",)),
         (("export", "nowhere"), ("nowhere: no run here",)),
         (("status",), ("no run in",)),
         (("down",), ("no run in",)),
@@ -165,35 +162,6 @@ def test_a_recording_that_was_cut_off(kinemap: Kinemap) -> None:
 def test_a_topic_that_was_not_recorded(kinemap: Kinemap) -> None:
     kinemap("record", _kitti(Path("k")), "--file", "a.mcap")
     _one_line(kinemap("replay", "a.mcap", "--topic", "slam/pose"), "slam/pose: not in a.mcap", "camera/image")
-
-
-def test_evaluate_prints_errors_with_their_coverage(kinemap: Kinemap) -> None:
-    truth = [f"{0.1 * i:.1f} {i} 0 {i * i} 0 0 0 1\n" for i in range(10)]
-    Path("truth.tum").write_text("".join(truth))
-    Path("estimate.tum").write_text("".join(truth[2:]))
-    ended = kinemap("evaluate", "estimate.tum", "--truth", "truth.tum", "--plot", "both.png")
-    error = json.loads(ended.out)
-    assert ended.code == 0
-    assert error["ate_m"]["rmse"] == pytest.approx(0.0, abs=1e-6)
-    assert error["coverage"] == pytest.approx(0.8)
-    assert Path("both.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_nonsense_trajectories(kinemap: Kinemap) -> None:
-    Path("empty.tum").write_text("")
-    Path("nan.tum").write_text("0.1 nan 0 0 0 0 0 1\n")
-    Path("two.tum").write_text("0.1 0 0 0 0 0 0 1\n0.2 1 0 0 0 0 0 1\n")
-    Path("good.tum").write_text("".join(f"{i} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
-    Path("late.tum").write_text("".join(f"{i + 100} {i} 0 {i * i} 0 0 0 1\n" for i in range(5)))
-    for name, part in (("empty", "holds no rows"), ("nan", "'nan'"), ("two", "2 poses"), ("late", "0 poses of")):
-        _one_line(kinemap("evaluate", f"{name}.tum", "--truth", "good.tum"), part)
-
-
-def test_only_runs_are_compared(kinemap: Kinemap) -> None:
-    Path("runs").mkdir()
-    Path("a.tum").write_text("")
-    _one_line(kinemap("evaluate", "runs", "a.tum"), "runs/report.json: no such report")
-    _one_line(kinemap("evaluate", "run", "runs", "a.tum"), "runs/report.json: no such report")
 
 
 def test_brackets_are_printed_as_they_are(kinemap: Kinemap) -> None:

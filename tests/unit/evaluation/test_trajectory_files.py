@@ -50,7 +50,7 @@ def test_comments_and_commas_are_read(tmp_path: Path) -> None:
     [
         ("", "holds no rows, expected a trajectory in TUM, KITTI or EuRoC format"),
         ("# nothing\n\n", "holds no rows, expected a trajectory in TUM, KITTI or EuRoC format"),
-        ("1 2 3\n", r"a\.txt:1: 3 numbers, expected 8 \(TUM\), 12 \(KITTI\)"),
+        ("1 2 3\n", r"a\.txt:1: 3 numbers, expected 8 \(TUM\), 12 \(KITTI\) or 8 or 17 \(EuRoC \.csv\)"),
         (f"{TUM_ROW}\n0.2 1 2 3 0 0 1\n", r"a\.txt:2: 7 numbers, expected 8"),
         ("0.1 1 2 three 0 0 0 1\n", r"a\.txt:1: tz 'three', expected a finite number"),
         ("0.1 1 nan 3 0 0 0 1\n", r"a\.txt:1: ty 'nan', expected a finite number"),

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How the subcommands of `kinemap evaluate` show and keep what they found."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from services.evaluation.comparison import ComparisonRow
+from services.evaluation.run_outcome import Report
+from services.runtime.errors import InputError, ResourceError
+
+JsonFlag = Annotated[Path | None, typer.Option("--json", help="Write everything measured to this file (JSON).")]
+PlotsFlag = Annotated[Path | None, typer.Option("--plots", help="Draw the pictures into this folder (PNG).")]
+
+
+def print_table(columns: Sequence[str], rows: Sequence[ComparisonRow]) -> None:
+    """One column for what is measured, then one for each of `columns`."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("", no_wrap=True)
+    for name in columns:
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(row.what, *row.values)
+    Console(markup=False).print(table, highlight=False)
+
+
+def keep_json(values: Report, path: Path | None) -> None:
+    """Write `values` where a file was asked for. Raises ResourceError where it cannot be written."""
+    from services.evaluation.report import write_report
+
+    if path is None:
+        return
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_report(values, path)
+    except OSError as error:
+        raise ResourceError(f"--json {path}: cannot be written ({error.strerror})") from error
+
+
+def plots_folder(path: Path) -> Path:
+    """Make the folder. Raises InputError where there is a file, ResourceError where it cannot be made."""
+    if path.exists() and not path.is_dir():
+        raise InputError(f"--plots {path}: is a file, expected a folder")
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ResourceError(f"--plots {path}: cannot be made ({error.strerror})") from error
+    return path
