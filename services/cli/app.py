@@ -5,6 +5,7 @@ import sys
 
 import typer
 
+from services.cli.bench.command import bench
 from services.cli.config import config_app
 from services.cli.doctor import doctor
 from services.cli.down import down
@@ -26,7 +27,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, up, down, status, record, replay, export):
+for command in (run, up, down, status, record, replay, export, bench):
     app.command()(command)
 app.add_typer(config_app, name="config")
 app.add_typer(evaluate_app, name="evaluate")

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`kinemap bench`: many runs of the pipeline, side by side."""
