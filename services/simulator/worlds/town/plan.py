@@ -55,7 +55,7 @@ class Crossing:
 
 @dataclass(frozen=True, slots=True)
 class TownPlan:
-    """loop: closed, periodic in s. crossings: by s. zebras_m: where people cross the loop, between junctions or beside them."""
+    """loop: closed, periodic in s. crossings: by s. zebras_m: where people cross the loop."""
 
     loop: Line
     crossings: Sequence[Crossing]
