@@ -3,7 +3,7 @@
 
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import Self
 
 from services.camera.sources.source import Source, SourceFrame
@@ -26,6 +26,10 @@ class Prefetch:
         self.failure: InputError | None = None
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="read")
         self._ahead: Future[SourceFrame | None] = self._thread.submit(self._read, first)
+
+    def has_next(self, timeout_s: float) -> bool:
+        """Whether `next` returns at once, after `timeout_s` at most."""
+        return not wait((self._ahead,), timeout_s).not_done
 
     def next(self) -> SourceFrame | None:
         """The next frame, waiting for it if need be; None at the end.

@@ -2,7 +2,7 @@
 """`realtime` as the camera sees it: frames leave at the pace at which they were captured, and nobody is waited for."""
 
 from services.camera.delivery import Outlet, Parcel
-from services.camera.pacing import Pacing
+from services.camera.pacing import AsTheyCome, Pacing
 from services.camera.position import Position, PositionFile
 from services.camera.sources.source import SourceFrame
 from services.runtime.frame_window import FrameWindow
@@ -19,14 +19,17 @@ class RealtimeDelivery:
         end_window: of the end of input alone, its first sequence 0.
         position_file: where a predecessor was, and where this one is saved.
         outlet: packs and sends.
+        pacing: when a frame's time has come.
     """
 
-    def __init__(self, end_window: FrameWindow, position_file: PositionFile, outlet: Outlet) -> None:
+    def __init__(
+        self, end_window: FrameWindow, position_file: PositionFile, outlet: Outlet, pacing: Pacing | AsTheyCome
+    ) -> None:
         self._end_window = end_window
         self._file = position_file
         self._outlet = outlet
         self._position = position_file.read()
-        self._pacing = Pacing()
+        self._pacing = pacing
         self._waiting: SourceFrame | None = None
         self._end: Parcel | None = None
         self._give_up_s = 0.0

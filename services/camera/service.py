@@ -9,19 +9,18 @@ import cv2
 from schemas import topics
 from schemas.codec import encode
 from schemas.records import EndOfInput
+from services.camera.configured_delivery import configured_delivery, require_realtime
 from services.camera.configured_source import open_configured_source
 from services.camera.delivery import Delivery, Host, Parcel
 from services.camera.frame_records import frame_records
-from services.camera.lossless import LosslessDelivery
 from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
-from services.camera.realtime import RealtimeDelivery
+from services.camera.sources.live_address import is_live
 from services.camera.sources.source import Source, SourceFrame
 from services.runtime.bus import Bus
 from services.runtime.config import Config
 from services.runtime.envelope import Envelope
-from services.runtime.frame_window import FrameWindow
 from services.runtime.host import ServiceHost, run_main
 from services.runtime.log import get_logger
 from services.runtime.metrics import Metrics
@@ -61,13 +60,14 @@ class CameraService:
     """Sends one source through, once."""
 
     def __init__(self, source: Source, bus: Bus, config: Config) -> None:
+        require_realtime(config)
         self.metrics = Metrics()
         self._source = source
-        self._session = config.run.session
-        self._settings = config.delivery
-        self._outlet = BusOutlet(source, bus, self._session)
+        self._config = config
+        self._outlet = BusOutlet(source, bus, config.run.session)
+        self._live = is_live(config.camera.input)
         self._log = get_logger(NAME)
-        self._position_file = PositionFile(config.run.out / "state" / NAME / "position.json", self._session)
+        self._position_file = PositionFile(config.run.out / "state" / NAME / "position.json", config.run.session)
         self._answers = bus.subscribe([topics.ANSWER])
         self._presence = Presence(topics.END.consumers)
         bus.watch_alive(self._presence.changed)
@@ -84,22 +84,22 @@ class CameraService:
             self._log.warning("assumed", note=note)
         self._log.info("source", name=self._source.name, frames=self._source.frame_count, first=host.sequence + 1)
         if not position.ended:
+            if self._live:
+                self._wait_for_services(host)  # what it saw while the others were starting is not news
             with Prefetch(self._source, host.sequence + 1, partial(self.metrics.observe_ms, "read")) as ahead:
-                self._wait_for_services(host)
-                delivery = self._delivery(host.sequence + 1)
-                self._deliver(ahead, delivery, host)
+                try:
+                    self._wait_for_services(host)
+                    delivery = configured_delivery(self._config, host.sequence + 1, self._position_file, self._outlet)
+                    self._deliver(ahead, delivery, host)
+                finally:
+                    if self._live:
+                        # Its next frame may never come, and nobody leaves while one is read.
+                        self._source.close()
                 if ahead.failure is not None:
                     raise ahead.failure
                 if not delivery.ended:
                     return
         host.state = "done"
-
-    def _delivery(self, first: int) -> Delivery:
-        services, resend_after_s = topics.ANSWERING_SERVICES, self._settings.resend_after_s
-        if self._settings.mode == "lossless":
-            window = FrameWindow(self._settings.window, services, resend_after_s, first)
-            return LosslessDelivery(window, self._position_file, self._outlet)
-        return RealtimeDelivery(FrameWindow(1, services, resend_after_s), self._position_file, self._outlet)
 
     def _wait_for_services(self, host: Host) -> None:
         said_s = time.monotonic()
@@ -113,7 +113,7 @@ class CameraService:
         while not (delivery.ended or host.stopping.is_set()):
             if self._presence.take_came():
                 delivery.service_came(time.monotonic())
-            if delivery.wants_frame:
+            if delivery.wants_frame and (not self._live or ahead.has_next(_TICK_S)):
                 delivery.offer(ahead.next(), time.monotonic())
             sent_again = delivery.sent_again
             wait_s = delivery.step(time.monotonic())
@@ -122,7 +122,7 @@ class CameraService:
                 self._log.warning_limited("sent_again", waiting_for=delivery.waiting_for())
             message = self._answers.receive(min(wait_s, _TICK_S))
             while message is not None:
-                if message.envelope.session == self._session:
+                if message.envelope.session == self._config.run.session:
                     delivery.answered(message.suffix, message.envelope.sequence)
                 message = self._answers.receive(0.0)
             host.sequence = delivery.done

@@ -24,7 +24,9 @@ InputArgument = Annotated[
     str | None,
     typer.Argument(
         metavar="[INPUT]",
-        help="KITTI odometry folder, folder of images, video, recorded session (.mcap), or 'simulator' (the default).",
+        help="Folder: KITTI (odometry, raw drive, tracking sequence), TUM RGB-D, EuRoC, images with calibration.toml. "
+        "File: video, ROS 1 bag (.bag), ROS 2 bag (folder, .db3), MCAP (recorded session, ROS 2 or Foxglove images). "
+        "Live: 0, /dev/video0, rtsp://..., http://... Or 'simulator' (the default).",
     ),
 ]
 StageFlag = Annotated[

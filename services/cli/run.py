@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from services.camera.sources.live_address import is_live
 from services.cli.flags import (
     ConfigFlag,
     InputArgument,
@@ -35,7 +36,7 @@ def run(
     out: OutFlag = None,
     serve: Annotated[bool, typer.Option("--serve", help="Keep everything up afterwards, until Ctrl-C.")] = False,
     frames: Annotated[int | None, typer.Option("--frames", help="Stop after this many frames.")] = None,
-    calibration: Annotated[Path | None, typer.Option(help="Calibration of a folder of images or a video.")] = None,
+    calibration: Annotated[Path | None, typer.Option(help="Calibration of images, a video, a bag or a camera.")] = None,
     instances: Annotated[Path | None, typer.Option(help="Folder of instance masks (default: INPUT/instances).")] = None,
     port: PortFlag = None,
     config: ConfigFlag = None,
@@ -65,6 +66,7 @@ def resolve_run(file: Path | None, settings: list[str] | None, flags: Overrides,
     if "entry_point" not in resolved.bus.model_fields_set and resolved.bus.router is None:
         resolved.bus.entry_point = f"tcp/127.0.0.1:{any_free_port()}"
     _make_absolute(resolved)
+    _choose_delivery(resolved)
     return resolved
 
 
@@ -92,9 +94,18 @@ def run_input(config: Config, serve: bool) -> None:
 
 
 def _make_absolute(config: Config) -> None:
-    if config.camera.input != _SIMULATOR:
+    if config.camera.input != _SIMULATOR and not is_live(config.camera.input):
         config.camera.input = str(Path(config.camera.input).resolve())
     if config.camera.calibration is not None:
         config.camera.calibration = config.camera.calibration.resolve()
     if config.segmenter.instances is not None:
         config.segmenter.instances = config.segmenter.instances.resolve()
+
+
+def _choose_delivery(config: Config) -> None:
+    """A live camera is delivered in `realtime`, unless the user asked for something else: then the camera says no."""
+    from services.camera.configured_delivery import require_realtime
+
+    if is_live(config.camera.input) and "mode" not in config.delivery.model_fields_set:
+        config.delivery.mode = "realtime"
+    require_realtime(config)

@@ -4,14 +4,14 @@
 from pathlib import Path
 
 from services.camera.sources.calibration_file import CALIBRATION_NAMES, find_calibration, read_calibration
-from services.camera.sources.folder_source import CameraImages, FolderSource
 from services.camera.sources.image_files import ImageFiles
+from services.camera.sources.indexed_source import CameraImages, IndexedSource
 from services.camera.sources.number_rows import times_of_folder
 
 _IMAGES = "images"
 
 
-class ImageFolder(FolderSource):
+class ImageFolder(IndexedSource):
     """Images (or a subfolder `images` of them) in the order of their names, calibration.toml or calib.txt, times.txt.
 
     Args:

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.folder_source import FolderSource
 from services.camera.sources.image_files import ImageFiles
+from services.camera.sources.indexed_source import IndexedSource
 from services.camera.sources.kitti_pair import LEFT_NUMBERS, NumberedImages, calibrated_pair
 from services.camera.sources.number_rows import read_kitti_poses, times_of_folder
 
@@ -17,7 +17,7 @@ def is_kitti_folder(folder: Path) -> bool:
     return any((folder / f"image_{number}").is_dir() for number in LEFT_NUMBERS)
 
 
-class KittiOdometry(FolderSource):
+class KittiOdometry(IndexedSource):
     """image_0 or image_2 (left), image_1 or image_3 (right), calib.txt, times.txt and poses as far as they are there.
 
     Poses are looked for as poses.txt in the folder and as ../../poses/<folder's name>.txt; their world is the first

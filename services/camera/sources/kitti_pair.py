@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from schemas.records import CameraCalibration
-from services.camera.sources.folder_source import CameraImages, Images
+from services.camera.sources.indexed_source import CameraImages, Images
 from services.camera.sources.kitti_calibration import camera_0_from, read_projections
 from services.runtime.errors import InputError
 
@@ -78,6 +78,4 @@ def _right_of(
 
 
 def _calibration(images: Images, projection: Array, frame_id: str) -> CameraCalibration:
-    return CameraCalibration(
-        0, *images.size, projection[:, :3].copy(), projection=projection.copy(), frame_id=frame_id
-    )
+    return CameraCalibration(0, *images.size, projection[:, :3].copy(), projection=projection.copy(), frame_id=frame_id)

@@ -26,8 +26,9 @@ class SourceFrame:
 class Source(Protocol):
     """An input that is already checked: to make one raises InputError for whatever can be found wrong cheaply.
 
-    `frame` is a pure function of the index, so that a camera that was killed goes on with the same bytes. It is called
-    from one thread at a time, which need not be the one that made the source.
+    `frame` is a pure function of the index, so that a camera that was killed goes on with the same bytes; only a live
+    camera's is not (see `LiveCamera`). It is called from one thread at a time, which need not be the one that made the
+    source.
     """
 
     @property

@@ -87,7 +87,8 @@ def realtime(position_file: PositionFile) -> Callable[[int], Camera]:
     def make(count: int) -> Camera:
         first = position_file.read().sequence + 1
         outlet = Outlet()
-        return Camera(RealtimeDelivery(FrameWindow(1, SERVICES, 2.0), position_file, outlet), outlet, first, count)
+        window = FrameWindow(1, SERVICES, 2.0)
+        return Camera(RealtimeDelivery(window, position_file, outlet, Pacing()), outlet, first, count)
 
     return make
 

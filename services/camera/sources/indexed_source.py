@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the data sets' folders have in common: images by index, each with its time, its camera and its truth."""
+"""What recorded inputs have in common: images by index, each with its time, its camera and its truth."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,9 +17,8 @@ Pose = npt.NDArray[np.float64]
 class Images(Protocol):
     """Images of one size by index."""
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """(width, height) in px of each."""
+    size: tuple[int, int]
+    """(width, height) in px of each"""
 
     def __len__(self) -> int: ...
 
@@ -45,8 +44,8 @@ class CameraImages:
     calibration: CameraCalibration
 
 
-class FolderSource:
-    """A sequence that is indexed already; everything is by frame, and nothing is held open.
+class IndexedSource:
+    """A sequence that is indexed already; everything is by frame.
 
     Args:
         name: what this input is, for people.

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How KITTI's sensors sit on the car: lines `R: <9 numbers>`, `T: <3 numbers>` and `Tr_velo_cam <12 numbers>`."""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from services.camera.sources.number_rows import parse_numbers, read_lines
+from services.runtime.errors import InputError
+
+Array = npt.NDArray[np.float64]
+
+
+class KittiValues:
+    """The named numbers of a calibration file. Raises InputError for a file that cannot be read."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._lines = {}
+        for line_number, line in read_lines(path):
+            name, _, numbers = line.partition(" ")
+            self._lines[name.rstrip(":")] = (line_number, numbers)
+
+    def transform(self, *names: str) -> Array:
+        """(4, 4) of the first of `names` that is there: 3x4 or 3x3 numbers by rows. Raises InputError."""
+        name = self._present(names)
+        count = 9 if name.startswith("R") else 12
+        matrix = np.eye(4)
+        matrix[:3, : count // 3] = np.reshape(self._numbers(name, count), (3, count // 3))
+        return matrix
+
+    def rotation_and_translation(self) -> Array:
+        """(4, 4) of the lines R and T. Raises InputError."""
+        matrix = self.transform("R")
+        matrix[:3, 3] = self._numbers(self._present(("T",)), 3)
+        return matrix
+
+    def _present(self, names: tuple[str, ...]) -> str:
+        name = next((name for name in names if name in self._lines), None)
+        if name is None:
+            raise InputError(f"{self._path}: no line '{names[0]}', expected one with its numbers")
+        return name
+
+    def _numbers(self, name: str, count: int) -> list[float]:
+        line_number, numbers = self._lines[name]
+        return parse_numbers(self._path, line_number, numbers, count)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A calibrated stereo pair made rectified: both cameras looking the same way, rows matching rows.
+
+Source: OpenCV's stereoRectify (Bouguet's method), which keeps only what both cameras see of the scene.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from schemas.records import CameraCalibration
+from services.camera.sources.indexed_source import CameraImages, Images
+
+Array = npt.NDArray[np.float64]
+
+
+class RectifiedImages:
+    """`images` as a rectified camera would have taken them.
+
+    Args:
+        images: as the sensor gave them.
+        calibration: of that sensor.
+        rectified_from_camera: (3, 3) rotation.
+        intrinsics: (3, 3) of the rectified camera, px.
+    """
+
+    def __init__(
+        self, images: Images, calibration: CameraCalibration, rectified_from_camera: Array, intrinsics: Array
+    ) -> None:
+        self._images = images
+        self.size = images.size
+        self._map_x, self._map_y = cv2.initUndistortRectifyMap(
+            calibration.intrinsics,
+            np.array(calibration.distortion),
+            rectified_from_camera,
+            intrinsics,
+            images.size,
+            cv2.CV_16SC2,
+        )
+
+    def __len__(self) -> int:
+        return len(self._images)
+
+    def name(self, index: int) -> str:
+        return self._images.name(index)
+
+    def read(self, index: int) -> npt.NDArray[np.uint8]:
+        pixels = cv2.remap(self._images.read(index), self._map_x, self._map_y, cv2.INTER_LINEAR)
+        return np.asarray(pixels, dtype=np.uint8)
+
+
+@dataclass(frozen=True)
+class RectifiedStereo:
+    """Both cameras, and (4, 4) camera_from_rectified of the left one: a pure rotation."""
+
+    left: CameraImages
+    right: CameraImages
+    camera_from_rectified: Array
+
+
+def rectify(left: CameraImages, right: CameraImages, right_from_left: Array) -> RectifiedStereo:
+    """The rectified pair; `right_from_left` is (4, 4) in metres between the cameras as they are."""
+    size = left.images.size
+    left_rotation, right_rotation, left_projection, right_projection, *_ = cv2.stereoRectify(
+        left.calibration.intrinsics,
+        np.array(left.calibration.distortion),
+        right.calibration.intrinsics,
+        np.array(right.calibration.distortion),
+        size,
+        right_from_left[:3, :3],
+        right_from_left[:3, 3],
+        flags=cv2.CALIB_ZERO_DISPARITY,
+        alpha=0,
+    )
+    camera_from_rectified = np.eye(4)
+    camera_from_rectified[:3, :3] = left_rotation.T
+    return RectifiedStereo(
+        _rectified(left, left_rotation, left_projection, "camera"),
+        _rectified(right, right_rotation, right_projection, "camera_right"),
+        camera_from_rectified,
+    )
+
+
+def _rectified(camera: CameraImages, rotation: Any, projection: Any, frame_id: str) -> CameraImages:
+    intrinsics = np.ascontiguousarray(projection[:, :3])
+    images = RectifiedImages(camera.images, camera.calibration, rotation, intrinsics)
+    calibration = CameraCalibration(0, *images.size, intrinsics, projection=projection, frame_id=frame_id)
+    return CameraImages(images, calibration)
