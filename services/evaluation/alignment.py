@@ -83,4 +83,4 @@ def _variance(centred: Points) -> float:
 
 
 def _is_one_place(variance: float, mean: Points) -> bool:
-    return variance <= np.finfo(np.float64).eps * (1.0 + float(np.square(mean).sum()))
+    return variance <= float(np.finfo(np.float64).eps) * (1.0 + float(np.square(mean).sum()))

@@ -8,6 +8,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from services.cli.evaluate.density import density
 from services.cli.evaluate.run import run
 from services.cli.evaluate.trajectory import trajectory
 
@@ -35,3 +36,4 @@ evaluate_app = typer.Typer(
 )
 evaluate_app.command()(run)
 evaluate_app.command()(trajectory)
+evaluate_app.command()(density)

@@ -13,19 +13,24 @@ from services.evaluation.comparison import ComparisonRow
 from services.evaluation.run_outcome import Report
 from services.runtime.errors import InputError, ResourceError
 
+_LOG_WIDTH = 160
+
 JsonFlag = Annotated[Path | None, typer.Option("--json", help="Write everything measured to this file (JSON).")]
 PlotsFlag = Annotated[Path | None, typer.Option("--plots", help="Draw the pictures into this folder (PNG).")]
 
 
 def print_table(columns: Sequence[str], rows: Sequence[ComparisonRow]) -> None:
-    """One column for what is measured, then one for each of `columns`."""
+    """One column for what is measured, then one for each of `columns`; in a log, which has no width, in long lines."""
     table = Table(box=None, pad_edge=False)
     table.add_column("", no_wrap=True)
     for name in columns:
         table.add_column(name, overflow="fold")
     for row in rows:
         table.add_row(row.what, *row.values)
-    Console(markup=False).print(table, highlight=False)
+    console = Console(markup=False)
+    if not console.is_terminal:
+        console.width = _LOG_WIDTH
+    console.print(table, highlight=False)
 
 
 def keep_json(values: Report, path: Path | None) -> None:

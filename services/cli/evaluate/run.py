@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 
 from services.cli.evaluate.output import print_table
+from services.cli.evaluate.session import RecoverFlag
 from services.cli.run_folder import CONFIG_NAME, newest_run_folder
 from services.cli.run_results import USAGE_NAME, print_summary, read_usage
 from services.evaluation.comparison import compare
@@ -21,9 +22,7 @@ def run(
         list[Path], typer.Argument(metavar="FOLDER...", help="Folder of a run, or several folders to compare.")
     ],
     *,
-    recover: Annotated[
-        bool, typer.Option("--recover", help="Read what is whole of a recording that was cut off.")
-    ] = False,
+    recover: RecoverFlag = False,
 ) -> None:
     """A run's folder gets its report anew; several stand side by side."""
     if len(folders) > 1:
