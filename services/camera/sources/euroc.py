@@ -66,7 +66,7 @@ class Euroc(IndexedSource):
             right = _camera_images(root / "cam1", right_sensor, [right_files[time_ns] for time_ns in times_ns])
             right_from_left = np.linalg.inv(right_sensor.body_from_camera) @ body_from_camera
             _expect_one_size(root, left, right)
-            pair = rectify(left, right, right_from_left)
+            pair = rectify(left, right, right_from_left, str(root / "cam1"))
             left, right = pair.left, pair.right
             body_from_camera = body_from_camera @ pair.camera_from_rectified
         poses = _read_truth(root, body_from_camera, times_ns)

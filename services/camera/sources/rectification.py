@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from schemas.records import CameraCalibration
 from services.camera.sources.indexed_source import CameraImages, Images
+from services.runtime.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
@@ -61,8 +62,12 @@ class RectifiedStereo:
     camera_from_rectified: Array
 
 
-def rectify(left: CameraImages, right: CameraImages, right_from_left: Array) -> RectifiedStereo:
-    """The rectified pair; `right_from_left` is (4, 4) in metres between the cameras as they are."""
+def rectify(left: CameraImages, right: CameraImages, right_from_left: Array, where: str) -> RectifiedStereo:
+    """The rectified pair; `right_from_left` is (4, 4) in metres between the cameras as they are, `where` names them.
+
+    Raises:
+        InputError: the right camera is not right of the left one.
+    """
     size = left.images.size
     left_rotation, right_rotation, left_projection, right_projection, *_ = cv2.stereoRectify(
         left.calibration.intrinsics,
@@ -70,11 +75,14 @@ def rectify(left: CameraImages, right: CameraImages, right_from_left: Array) -> 
         right.calibration.intrinsics,
         np.array(right.calibration.distortion),
         size,
-        right_from_left[:3, :3],
-        right_from_left[:3, 3],
+        np.ascontiguousarray(right_from_left[:3, :3]),
+        np.ascontiguousarray(right_from_left[:3, 3:]),
         flags=cv2.CALIB_ZERO_DISPARITY,
         alpha=0,
     )
+    if not right_projection[0, 3] < 0:
+        x, y, z = np.linalg.inv(right_from_left)[:3, 3]
+        raise InputError(f"{where}: at x {x:.3f}, y {y:.3f}, z {z:.3f} m of the left camera, expected right of it")
     camera_from_rectified = np.eye(4)
     camera_from_rectified[:3, :3] = left_rotation.T
     return RectifiedStereo(
