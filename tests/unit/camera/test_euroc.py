@@ -30,6 +30,7 @@ BODY_FROM_CAMERA = (
     matrix_from_pose(np.array([-0.02, -0.06, 0.01, 0.02, -0.01, 0.7, 0.714])),
     matrix_from_pose(np.array([-0.02, 0.05, 0.01, 0.01, -0.02, 0.7, 0.714])),
 )
+FARTHER_RIGHT = (BODY_FROM_CAMERA[0] @ matrix_from_pose(np.array([0.5, 0, 0, 0, 0, 0, 1]))).ravel().tolist()
 # One point of the world a frame, in front of the rig.
 POINTS_M = ((0.3, 0.1, 3.0), (-0.7, 0.4, 4.0), (0.2, -0.6, 2.5))
 
@@ -170,12 +171,7 @@ def test_truth_between_its_samples_and_beyond_them(euroc: Path) -> None:
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        (
-            {
-                "T_BS": f"\n  data: {(BODY_FROM_CAMERA[0] @ matrix_from_pose(np.array([0.5, 0, 0, 0, 0, 0, 1]))).ravel().tolist()}"
-            },
-            "right camera at x -0.39., .* m of the left one, expected right of it",
-        ),
+        ({"T_BS": f"\n  data: {FARTHER_RIGHT}"}, "cam1: at x -0.39., .* m of the left camera, expected right of it"),
         ({"intrinsics": "[1, 2, 3]"}, r"intrinsics '\[1, 2, 3\]', expected 4 finite numbers"),
         ({"intrinsics": "[1, 2, 3, nan]"}, "intrinsics .* expected 4 finite numbers"),
         ({"intrinsics": "[0, 2, 3, 4]"}, "focal lengths 0 2, expected above 0"),

@@ -93,14 +93,11 @@ def _check_truth(source: KittiRaw | KittiTracking) -> None:
     np.testing.assert_allclose(poses[0][:3, 3], (-0.1, 0, 0), atol=1e-9)
     np.testing.assert_allclose(poses[0][:3, :3], np.eye(3), atol=1e-9)
     np.testing.assert_allclose(poses[1][:3, 3], (-0.1, -0.5, 2.0), atol=1e-6)
-    # Turned left about the unit, which sits 0.8 - 0.3 m behind camera 0 seen along the drive: forward is now -x.
+    # Turned left about the unit, which sits 0.8 + 0.3 m behind camera 0: what was ahead of it is now to its left (-x).
     np.testing.assert_allclose(poses[2][:3, 2], (-1, 0, 0), atol=1e-9)
-    unit_z_m = 2.0 + 0.3 - 0.8 - 0.6
-    assert unit_z_m < 2.0
-    from_unit = poses[2][:3, 3] - poses[1][:3, 3]
-    camera_from_unit = np.array((-0.1, 0.0, -(-0.8 - 0.3)))
-    turned = np.array((-camera_from_unit[2], 0.0, camera_from_unit[0]))
-    np.testing.assert_allclose(from_unit, turned - camera_from_unit, atol=1e-6)
+    seen_from_unit = np.array((-0.1, 0.0, 1.1))
+    turned = np.array((-1.1, 0.0, -0.1))
+    np.testing.assert_allclose(poses[2][:3, 3] - poses[1][:3, 3], turned - seen_from_unit, atol=1e-6)
 
 
 def test_a_drive_gives_its_pairs_times_and_truth(drive: Path) -> None:
