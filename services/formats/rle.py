@@ -92,9 +92,16 @@ def masks_overlap(masks: Sequence[Rle]) -> bool:
 
 
 def masks_iou(first: Sequence[Rle], second: Sequence[Rle], *, of_first: bool = False) -> npt.NDArray[np.float64]:
-    """Intersection over union of every pair, (len(first), len(second)); over `first`'s own area with `of_first`."""
+    """Intersection over union of every pair, (len(first), len(second)); over `first`'s own area with `of_first`.
+
+    Raises:
+        InputError: masks of different sizes.
+    """
     if not first or not second:
         return np.zeros((len(first), len(second)))
+    sizes = sorted({(mask.width, mask.height) for mask in (*first, *second)})
+    if len(sizes) > 1:
+        raise InputError(f"masks of {sizes[0][0]}x{sizes[0][1]} and {sizes[1][0]}x{sizes[1][1]} px, expected one size")
     crowd = [int(of_first)] * len(second)
     encoded = [[mask.as_coco() for mask in masks] for masks in (first, second)]
     return np.asarray(_mask_api().iou(encoded[0], encoded[1], crowd), dtype=np.float64)

@@ -87,3 +87,8 @@ def test_an_empty_mask_has_no_box() -> None:
     empty = encode_mask(np.zeros((3, 4)))
     assert isinstance(empty, Rle)
     assert mask_box(empty) == (0.0, 0.0, 0.0, 0.0)
+
+
+def test_masks_of_different_sizes_are_not_compared() -> None:
+    with pytest.raises(InputError, match="masks of 4x3 and 5x3 px, expected one size"):
+        masks_iou([encode_mask(np.ones((3, 4)))], [encode_mask(np.ones((3, 5)))])
