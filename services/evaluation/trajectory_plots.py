@@ -72,9 +72,8 @@ def plot_error_violin(evaluated: Sequence[EvaluatedTrajectory], truth: Trajector
     figure = new_figure(height_in=5.5, width_in=max(6.0, 1.6 * len(evaluated) + 2.0))
     axes = figure.add_subplot()
     places = np.arange(1, len(evaluated) + 1)
-    parts: dict[str, Any] = axes.violinplot(
-        [item.error.errors_m for item in evaluated], places, widths=0.7, showextrema=False
-    )
+    errors = [item.error.errors_m for item in evaluated]
+    parts: dict[str, Any] = axes.violinplot(errors, places, widths=0.7, showextrema=False)
     for number, item in enumerate(evaluated):
         parts["bodies"][number].set(facecolor=_colour(number), edgecolor="black", alpha=0.6)
         low, median, high = np.percentile(item.error.errors_m, (25, 50, 75))

@@ -67,10 +67,8 @@ def _said(level: DensityLevel, said: int, true: int) -> DensityFrame:
 
 def test_errors_and_levels_are_counted_and_unknown_stands_apart() -> None:
     low, high, unknown = DensityLevel.LOW, DensityLevel.HIGH, DensityLevel.UNKNOWN
-    error = density_error(
-        [_said(high, 3, 1), _said(high, 1, 0), _said(low, 0, 2), _said(low, 0, 0), _said(low, 0, 0)]
-        + [_said(unknown, 0, 9), _said(unknown, 0, 0), _said(unknown, 0, 0)]
-    )
+    placed = [_said(high, 3, 1), _said(high, 1, 0), _said(low, 0, 2), _said(low, 0, 0), _said(low, 0, 0)]
+    error = density_error([*placed, _said(unknown, 0, 9), _said(unknown, 0, 0), _said(unknown, 0, 0)])
     assert (error.frames, error.compared, error.coverage) == (8, 5, pytest.approx(0.625))
     assert error.mean_absolute_objects == pytest.approx((2 + 1 + 2) / 5)
     assert error.bias_objects == pytest.approx((2 + 1 - 2) / 5)
