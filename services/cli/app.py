@@ -14,6 +14,7 @@ from services.cli.export import export
 from services.cli.record import record
 from services.cli.replay import replay
 from services.cli.run import run
+from services.cli.simulate import simulate
 from services.cli.status import status
 from services.cli.up import up
 from services.runtime.errors import KinemapError
@@ -27,7 +28,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (run, up, down, status, record, replay, export, bench):
+for command in (run, up, down, status, record, replay, export, bench, simulate):
     app.command()(command)
 app.add_typer(config_app, name="config")
 app.add_typer(evaluate_app, name="evaluate")

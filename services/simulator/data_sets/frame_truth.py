@@ -32,12 +32,14 @@ class ObjectTruth:
 class FrameTruth:
     """A finished frame: its own files, and all that the sequence's files say of it.
 
+    k: (3, 3), the camera's matrix, px.
     first_from_camera: (4, 4), left camera of this frame in that of the first one, metres.
     world_from_camera: (4, 4); the simulator's world, x forward and y left at the start, z up.
     """
 
     index: int
     timestamp_ns: int
+    k: NDArray[np.float64]
     world_from_camera: NDArray[np.float64]
     first_from_camera: NDArray[np.float64]
     objects: tuple[ObjectTruth, ...]
@@ -51,6 +53,7 @@ def write_frame_truth(path: Path, truth: FrameTruth) -> None:
         {
             "index": truth.index,
             "timestamp_ns": truth.timestamp_ns,
+            "k": truth.k.tolist(),
             "world_from_camera": truth.world_from_camera.tolist(),
             "first_from_camera": truth.first_from_camera.tolist(),
             "objects": [_object_row(item) for item in truth.objects],
@@ -66,6 +69,7 @@ def read_frame_truth(path: Path) -> FrameTruth:
         return FrameTruth(
             row["index"],
             row["timestamp_ns"],
+            np.array(row["k"], np.float64).reshape(3, 3),
             np.array(row["world_from_camera"], np.float64).reshape(4, 4),
             np.array(row["first_from_camera"], np.float64).reshape(4, 4),
             tuple(_object(item) for item in row["objects"]),

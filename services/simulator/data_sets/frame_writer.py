@@ -55,11 +55,17 @@ class FrameWriter:
         frame = self._drive.render(index)
         files = [*self._images(frame), *self._truth_images(frame)]
         if "surface" in self._formats and _shows_surface(index):
-            points = frame_surface(frame, self._drive.camera, self._first_from_world)
+            points = frame_surface(frame, self._drive.camera.k, self._first_from_world)
             write_whole(self._root, self._paths.frame_points(index), partial(_save_points, points))
         pose = frame.world_from_camera
         truth = FrameTruth(
-            index, frame.timestamp_ns, pose, self._first_from_world @ pose, self._objects(frame), tuple(files)
+            index,
+            frame.timestamp_ns,
+            self._drive.camera.k,
+            pose,
+            self._first_from_world @ pose,
+            self._objects(frame),
+            tuple(files),
         )
         write_whole(self._root, self._paths.frame_record(index), partial(_save_truth, truth))
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -95,17 +95,3 @@ def first_difference(one: dict[str, Any], other: dict[str, Any], prefix: str = "
         elif here != there:
             return f"{prefix}{name}", here, there
     return None
-
-
-def parse_seeds(texts: Sequence[str]) -> tuple[int, ...]:
-    """Seeds out of such as `1,2,5-8`. Raises InputError for what is neither a whole number nor a range of them."""
-    seeds: list[int] = []
-    for text in texts:
-        low, dash, high = text.strip().partition("-")
-        if not low.isdecimal() or (dash and not high.isdecimal()) or (dash and int(high) < int(low)):
-            raise InputError(f"seeds '{text}': expected whole numbers or ranges, such as 1,2,5-8")
-        last = int(high) if dash else int(low)
-        if last - int(low) >= _MAX_SEQUENCES:
-            raise InputError(f"seeds '{text}': expected at most {_MAX_SEQUENCES} seeds")
-        seeds.extend(range(int(low), last + 1))
-    return tuple(seeds)

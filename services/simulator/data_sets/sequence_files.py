@@ -17,7 +17,6 @@ from services.formats.mots import CAR, IDS_PER_CLASS, IGNORED, PERSON, MotsObjec
 from services.formats.rle import Rle, decode_mask, encode_mask
 from services.formats.trajectory import Trajectory
 from services.formats.tum import write_tum
-from services.simulator.camera.pinhole import PinholeCamera
 from services.simulator.data_sets.frame_truth import FrameTruth
 from services.simulator.data_sets.layout import SequencePaths, frame_name
 from services.simulator.data_sets.surface import thinned, write_ply
@@ -40,7 +39,8 @@ class SequenceFiles:
         """Write what `formats` ask for. Raises ResourceError where the disk does not take it."""
         path_of_camera = self._trajectory()
         times = path_of_camera.timestamp_ns
-        yield self._file(self._paths.calibration, lambda path: write_calibration(path, self._options))
+        k, baseline_m = self._frames[0].k, self._options.stereo_baseline_m
+        yield self._file(self._paths.calibration, lambda path: write_calibration(path, k, baseline_m))
         yield self._file(self._paths.times, lambda path: write_times(times, path))
         yield self._file(self._paths.poses, lambda path: write_kitti_poses(path_of_camera, path))
         if "tum" in formats:
@@ -80,14 +80,14 @@ class SequenceFiles:
         write_ply(path, thinned(clouds), "frame: first left camera, x right, y down, z forward, metres")
 
 
-def write_calibration(path: Path, options: DriveOptions) -> None:
+def write_calibration(path: Path, k: NDArray[np.float64], baseline_m: float) -> None:
     """P0..P3 as KITTI's odometry benchmark has them: grey left, grey right, colour left, colour right.
 
-    Each is [K | t] with t = -fx * baseline for the right ones; without stereo all four are the left camera's.
+    Each is [K | t], px, with t = -fx * baseline_m for the right ones; without stereo all four are the left camera's.
     """
-    left = np.hstack([PinholeCamera.from_options(options).k, np.zeros((3, 1))])
+    left = np.hstack([k, np.zeros((3, 1))])
     right = left.copy()
-    right[0, 3] = -left[0, 0] * options.stereo_baseline_m
+    right[0, 3] = -left[0, 0] * baseline_m
     rows = {"P0": left, "P1": right, "P2": left, "P3": right, "Tr": _LASER_AXES}
     # Adding 0 turns -0 into 0.
     lines = [f"{name}: {' '.join(f'{value + 0.0:.12e}' for value in row.ravel())}\n" for name, row in rows.items()]

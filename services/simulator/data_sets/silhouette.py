@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-
-from services.simulator.camera.pinhole import PinholeCamera
 
 Floats = NDArray[np.float64]
 
@@ -18,6 +17,20 @@ _CANVAS_PX = 128
 """Longer side of the silhouette as it is drawn, whatever its size in the image: an error of a percent or so."""
 _SHIFT = 6
 """Binary digits behind the point of cv2's coordinates."""
+
+
+class ProjectingCamera(Protocol):
+    """A camera of `width` x `height` px that knows where points of its own frame appear."""
+
+    @property
+    def width(self) -> int: ...
+
+    @property
+    def height(self) -> int: ...
+
+    def project(self, points_in_camera: Floats) -> Floats:
+        """(..., 3) metres to (..., 2) px."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +42,7 @@ class Silhouette:
     box_px: tuple[float, float, float, float]
 
 
-def silhouette(camera: PinholeCamera, corners_in_camera: Floats) -> Silhouette | None:
+def silhouette(camera: ProjectingCamera, corners_in_camera: Floats) -> Silhouette | None:
     """Of triangles (T, 3, 3), metres in the camera's frame; None where they reach behind the camera or miss the image.
 
     Box coordinates count from the centre of the first pixel, and end within the image.

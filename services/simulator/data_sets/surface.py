@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.records import MotionState
-from services.simulator.camera.pinhole import PinholeCamera
 from services.simulator.frame import SimulatedFrame
 
 VOXEL_M = 0.1
@@ -28,17 +27,16 @@ _PLY_TYPES = {"<f4": "float", "|u1": "uchar"}
 
 
 def frame_surface(
-    frame: SimulatedFrame, camera: PinholeCamera, reference_from_world: NDArray[np.float64]
+    frame: SimulatedFrame, k: NDArray[np.float64], reference_from_world: NDArray[np.float64]
 ) -> NDArray[np.void]:
     """The points (N,) of POINT that one frame sees of what stands at its time, in the reference frame.
 
-    Sky, what moves, and what is farther than `FARTHEST_M` are left out.
+    k: calibration matrix (3, 3) in px. Sky, what moves, and what is farther than `FARTHEST_M` are left out.
     """
     moving = [instance.instance_id for instance in frame.instances if instance.moving]
     chosen = (frame.depth_m > 0.0) & (frame.depth_m <= FARTHEST_M) & ~np.isin(frame.labels, moving)
     rows, columns = np.nonzero(chosen)
     depth = frame.depth_m[chosen].astype(np.float64)
-    k = camera.k
     in_camera = np.stack([(columns - k[0, 2]) / k[0, 0] * depth, (rows - k[1, 2]) / k[1, 1] * depth, depth], axis=1)
     reference_from_camera = reference_from_world @ frame.world_from_camera
     place = in_camera @ reference_from_camera[:3, :3].T + reference_from_camera[:3, 3]

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Depth, instances and motion as colours."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+Picture = npt.NDArray[np.uint8]
+
+_NEAR_M, _FAR_M = 3.0, 80.0
+_SKY = 235
+_GREEN, _RED = (60, 170, 40), (40, 40, 225)
+_TINT = 0.6
+_GOLDEN = 0.618034
+"""Steps of this share of the circle keep any number of neighbouring hues apart."""
+
+
+def depth_colours(depth_m: npt.NDArray[np.float32]) -> Picture:
+    """Picture (H, W, 3), blue-green-red, of a depth (H, W): by its inverse, red is near and blue far; sky is pale."""
+    inverse = 1.0 / np.clip(depth_m, _NEAR_M, _FAR_M)
+    share = np.sqrt((inverse - 1.0 / _FAR_M) / (1.0 / _NEAR_M - 1.0 / _FAR_M))
+    picture: Picture = np.asarray(cv2.applyColorMap(np.rint(share * 255.0).astype(np.uint8), cv2.COLORMAP_TURBO))
+    picture[depth_m <= 0.0] = _SKY
+    return picture
+
+
+def instance_colours(labels: npt.NDArray[np.uint16]) -> Picture:
+    """Picture (H, W, 3), blue-green-red, of labels (H, W): each id a hue of its own, nobody dark."""
+    number = labels.astype(np.int64)
+    hsv = np.stack([number * _GOLDEN % 1.0 * 180.0, 170.0 + number % 3 * 40.0, 255.0 - number % 4 * 25.0], axis=2)
+    picture: Picture = np.asarray(cv2.cvtColor(hsv.astype(np.uint8), cv2.COLOR_HSV2BGR))
+    picture[labels == 0] = 30
+    return picture
+
+
+def moving_tint(image: Picture, labels: npt.NDArray[np.uint16], moving: frozenset[int]) -> Picture:
+    """The image (H, W, 3), blue-green-red and paler, with what stands in green and what moves in red."""
+    grey = cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR).astype(np.float64)
+    picture = 0.65 * grey + 0.35 * 255.0
+    moves = np.isin(labels, list(moving))
+    for mask, colour in ((moves, _RED), ((labels > 0) & ~moves, _GREEN)):
+        picture[mask] = (1.0 - _TINT) * grey[mask] + _TINT * np.array(colour)
+    return np.rint(picture).astype(np.uint8)
