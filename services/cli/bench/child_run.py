@@ -19,6 +19,8 @@ _ERROR = "kinemap: error: "
 _FRAMES = re.compile(rb"^(\d+)/(\d+) frames", re.MULTILINE)
 _TAIL_BYTES = 4096
 _STOP_PATIENCE_S = 30.0
+# After the last frame the map is still exported and the report made.
+_UNTIL_THE_RESULTS = 0.95
 
 
 class RunEnd(NamedTuple):
@@ -97,7 +99,7 @@ class ChildRun:
             found = _FRAMES.findall(log.read())
         if not found or int(found[-1][1]) == 0:
             return 0.0
-        return min(int(found[-1][0]) / int(found[-1][1]), 1.0)
+        return min(int(found[-1][0]) / int(found[-1][1]), _UNTIL_THE_RESULTS)
 
     def stop(self) -> None:
         """Interrupt it as Ctrl-C would; it writes what it has, and is killed where it does not end."""

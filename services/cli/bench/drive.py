@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A benchmark from its plan to its tables."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from rich.console import Console
 
 from services.cli.bench.bench_folder import reserved
@@ -71,7 +74,19 @@ def _finish(schedule: Schedule, output: BenchOutput, console: Console, interrupt
     if interrupted:
         raise InterruptedBenchError(f"stopped by the user after {len(runs)} of {len(schedule.runs)} runs")
     if output.table is not None:
-        put_on_page(output, output.table, runs, note)
+        put_on_page(output, output.table, _without_paths(runs, schedule.runs), note)
     failed = sum(run.status is RunStatus.FAILED for run in runs)
     if failed:
         raise FailedRunsError(f"{failed} of {len(runs)} runs failed; see the logs beside their folders in {folder}")
+
+
+def _without_paths(runs: Sequence[BenchRun], plan: Sequence[PlannedRun]) -> list[BenchRun]:
+    # A page is for readers elsewhere: where the inputs lie is of this machine.
+    names = {run.configuration["camera"]["input"]: run.input for run in plan}
+    shown = []
+    for run in runs:
+        failure = run.failure
+        for path, name in names.items():
+            failure = failure.replace(path, name)
+        shown.append(replace(run, failure=failure))
+    return shown

@@ -16,6 +16,7 @@ from services.evaluation.bench_runs import BenchRun, measures_of
 from services.runtime.errors import InputError, KinemapError
 
 _CODE = ("*.py", "*.so", "*.sql")
+_CODE_OF_NO_RUN = ("cli/", "evaluation/bench_")
 
 
 @dataclass(frozen=True)
@@ -67,11 +68,13 @@ class KeptRuns:
 
     @cached_property
     def code(self) -> str:
-        """SHA-256 of the program."""
+        """SHA-256 of what runs are made by: neither the commands nor a benchmark's tables change a run."""
         root = Path(services.__path__[0])
+        files = [path for pattern in _CODE for path in root.rglob(pattern)]
         digest = hashlib.sha256()
-        for file in sorted(path for pattern in _CODE for path in root.rglob(pattern)):
-            digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes())
+        for name, file in sorted((str(file.relative_to(root)), file) for file in files):
+            if not name.startswith(_CODE_OF_NO_RUN):
+                digest.update(name.encode() + b"\0" + file.read_bytes())
         return digest.hexdigest()
 
     def _bench_run(self, run: PlannedRun, end: RunEnd, alone: bool) -> BenchRun:

@@ -257,6 +257,20 @@ def test_the_page_gets_the_table_and_the_failures(bench: Bench, tmp_path: Path) 
     assert "| simulator | moving / base | 1 | 0.25 (better in 1 of 1) |" in text
 
 
+def test_a_failure_on_the_page_does_not_say_where_the_input_lies(bench: Bench, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("")
+    source = tmp_path / "03"
+    source.mkdir()
+    plan = plan_runs(BenchRequest((str(source),), stage_variants("base")))
+    runner = PlayedRunner({plan[0].name: RunEnd(f"camera: image {source}/000012.png: broken", 3.0)})
+    with pytest.raises(FailedRunsError):
+        bench.run(runner, plan, page=page, table="stages")
+    assert "failed: camera: image 03/000012.png: broken" in page.read_text()
+    assert str(tmp_path) not in page.read_text()
+    assert f"{source}/000012.png" in bench.printed
+
+
 def test_other_code_is_told_of(bench: Bench) -> None:
     bench.run(PlayedRunner())
     file = bench.folder / PLAN[0].folder.with_name("seed-7.json")

@@ -76,6 +76,14 @@ def test_each_run_that_counts_has_a_dot(runs: list[BenchRun], tmp_path: Path) ->
     assert _dots(tmp_path / "errors.png") == 3
 
 
+def test_paths_by_axis_are_of_one_seed_for_seeds_drive_different_ways(runs: list[BenchRun], tmp_path: Path) -> None:
+    # Of the other seed one variant was lost.
+    first_seed = [run for run in runs if run.trial == "seed-7"]
+    plot_axes(runs, read_paths(runs, tmp_path), "simulator", tmp_path / "all.png")
+    plot_axes(first_seed, read_paths(first_seed, tmp_path), "simulator", tmp_path / "one.png")
+    assert (tmp_path / "all.png").read_bytes() == (tmp_path / "one.png").read_bytes()
+
+
 def test_runs_without_truth_draw_empty_panels(tmp_path: Path) -> None:
     runs = [BenchRun("03", "base", "repeat-1", "03/base/repeat-1", failure="gone")]
     plot_errors(runs, {}, tmp_path / "errors.png")
