@@ -14,7 +14,7 @@ OUTLIER_SHARE = 0.05
 BANDS_PX = {"s0-10": (0.0, 10.0), "s10-40": (10.0, 40.0), "s40+": (40.0, np.inf)}
 """Of the true flow's length, as in Sintel's evaluation (Butler et al., ECCV 2012)."""
 
-_BINS_PER_PX = 1024
+BINS_PER_PX = 1024
 _LARGEST_PX = 128
 
 
@@ -34,7 +34,7 @@ class FlowError:
     band_pixels: dict[str, int] = field(default_factory=lambda: dict.fromkeys(BANDS_PX, 0))
     band_sum_px: dict[str, float] = field(default_factory=lambda: dict.fromkeys(BANDS_PX, 0.0))
     histogram: npt.NDArray[np.int64] = field(
-        default_factory=lambda: np.zeros(_BINS_PER_PX * _LARGEST_PX + 1, dtype=np.int64)
+        default_factory=lambda: np.zeros(BINS_PER_PX * _LARGEST_PX + 1, dtype=np.int64)
     )
 
     @property
@@ -48,7 +48,7 @@ class FlowError:
         if not self.estimated_pixels:
             return None
         place = np.searchsorted(np.cumsum(self.histogram), (self.estimated_pixels + 1) // 2)
-        return min((int(place) + 0.5) / _BINS_PER_PX, float(_LARGEST_PX))
+        return min((int(place) + 0.5) / BINS_PER_PX, float(_LARGEST_PX))
 
     @property
     def outliers(self) -> float | None:
@@ -74,7 +74,7 @@ class FlowError:
         error, length = error[estimated], length[estimated]
         self.estimated_pixels += error.size
         self.error_sum_px += float(error.sum())
-        bins = np.minimum(error * _BINS_PER_PX, _BINS_PER_PX * _LARGEST_PX).astype(np.int64)
+        bins = np.minimum(error * BINS_PER_PX, BINS_PER_PX * _LARGEST_PX).astype(np.int64)
         self.histogram += np.bincount(bins, minlength=self.histogram.size)
         for band, (low, high) in BANDS_PX.items():
             within = (length >= low) & (length < high)

@@ -9,7 +9,11 @@ import typer
 from typer.core import TyperGroup
 
 from services.cli.evaluate.density import density
+from services.cli.evaluate.flow import flow
+from services.cli.evaluate.masks import masks
+from services.cli.evaluate.moving import moving
 from services.cli.evaluate.run import run
+from services.cli.evaluate.tracking import tracking
 from services.cli.evaluate.trajectory import trajectory
 
 
@@ -37,3 +41,7 @@ evaluate_app = typer.Typer(
 evaluate_app.command()(run)
 evaluate_app.command()(trajectory)
 evaluate_app.command()(density)
+evaluate_app.command()(masks)
+evaluate_app.command()(moving)
+evaluate_app.command()(flow)
+evaluate_app.command()(tracking)

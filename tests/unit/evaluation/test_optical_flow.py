@@ -5,9 +5,9 @@ import cv2
 import numpy as np
 import pytest
 
-from services.evaluation.optical_flow_colours import colour_error, colour_flow, colour_wheel
 from services.evaluation.optical_flow_error import FlowError, endpoint_error
 from services.evaluation.optical_flow_input import find_flow_pairs
+from services.evaluation.optical_flow_plots import error_colours, plot_flow_errors, plot_flow_pair
 from services.evaluation.optical_flow_score import FlowScore, flow_score
 from services.formats.kitti_flow import FlowImage, read_kitti_flow, write_kitti_flow
 from services.formats.middlebury_flow import write_middlebury_flow
@@ -112,25 +112,24 @@ def test_nonsense_is_one_clear_line(tmp_path: Path) -> None:
         assert said in str(error.value)
 
 
-def test_colours_tell_directions_apart() -> None:
-    assert colour_wheel().shape == (55, 3)
-    flow = np.array([[(1, 0), (-1, 0), (0, 1), (0, -1), (0, 0)]], dtype=np.float32)
-    right, left, down, up, still = colour_flow(FlowImage(flow, np.ones((1, 5), dtype=bool)))[0].astype(int)
-    assert right[0] > 200 > right[2]  # red: Baker's wheel begins at the right
-    assert down[0] > 200  # by way of yellow
-    assert down[1] > 150
-    assert left[2] > 200  # to cyan and blue
-    assert up[2] > 200  # and magenta
-    assert still.tolist() == [255, 255, 255]
-    assert colour_flow(FlowImage(flow, np.zeros((1, 5), dtype=bool))).max() == 0
-
-
 def test_error_colours_turn_red_at_the_outlier() -> None:
     truth = _image([[10, 10, 10, 200]])
-    right, below, above, long = colour_error(np.array([[0.0, 2.9, 3.1, 9.0]], dtype=np.float32), truth)[0].astype(int)
+    right, below, above, long = error_colours(np.array([[0.0, 2.9, 3.1, 9.0]], dtype=np.float32), truth)[0].astype(int)
     for blue in (right, below, long):
         assert blue[2] > blue[0]
     assert above[0] > above[2]
+
+
+def test_pictures_are_the_same_every_time(tmp_path: Path) -> None:
+    truth = _folder(tmp_path / "truth", {"0": _image([[5, 5, 50], [0, 0, 0]])})
+    found = _folder(tmp_path / "found", {"0": _image([[5, 9, 20], [0, 0, 0]])})
+    pairs = find_flow_pairs(found, truth)
+    for name in ("a", "b"):
+        plot_flow_errors(flow_score(pairs), tmp_path / f"errors_{name}.png")
+        plot_flow_pair(pairs.pairs[0], tmp_path / f"pair_{name}.png")
+    for picture in ("errors", "pair"):
+        assert (tmp_path / f"{picture}_a.png").read_bytes() == (tmp_path / f"{picture}_b.png").read_bytes()
+        assert cv2.imread(str(tmp_path / f"{picture}_a.png")) is not None
 
 
 def test_dis_on_a_real_pair(shared_data: Path) -> None:
