@@ -154,7 +154,7 @@ class RosBag:
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
             raise InputError(
-                f"bag {self._path}: cut off or damaged ({why}), expected a whole bag of ROS 1 or 2"
+                f"bag {self._path}: cut off or damaged ({why.rstrip('.')}), expected a whole bag of ROS 1 or 2"
             ) from error
 
 

@@ -2,6 +2,7 @@
 """Bags of ROS 1 and ROS 2, written as a robot would record them."""
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,16 +28,22 @@ class Said(NamedTuple):
     message: Any
 
 
+@cache
+def _store_of(kind: BagKind) -> Any:
+    store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.ROS2_HUMBLE)
+    if kind == "ros1":
+        # Noetic's store leaves tf2 out.
+        definition = "geometry_msgs/TransformStamped[] transforms"
+        store.register(get_types_from_msg(definition, "tf2_msgs/msg/TFMessage"))
+    return store
+
+
 class Ros:
     """Makes messages of one ROS generation and writes them to a bag."""
 
     def __init__(self, kind: BagKind) -> None:
         self.kind = kind
-        self.store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.ROS2_HUMBLE)
-        if kind == "ros1":
-            # Noetic's store leaves tf2 out.
-            definition = "geometry_msgs/TransformStamped[] transforms"
-            self.store.register(get_types_from_msg(definition, "tf2_msgs/msg/TFMessage"))
+        self.store = _store_of(kind)
 
     def make(self, type_name: str, **fields: Any) -> Any:
         return self.store.types[type_name](**fields)

@@ -21,6 +21,12 @@ STEP_NS = 100_000_000
 CAMERA_ON_BASE = (0.2, 0.0, 1.0, -0.5, 0.5, -0.5, 0.5)
 
 
+def _read_all(path: Path) -> None:
+    source = open_ros_bag(path, TopicOptions("/cam/image_raw"))
+    for index in range(source.frame_count):
+        source.frame(index)
+
+
 def _pixels(index: int) -> npt.NDArray[np.uint8]:
     return np.random.default_rng(index).integers(0, 256, (SIZE[1], SIZE[0], 3), dtype=np.uint8)
 
@@ -186,11 +192,8 @@ def test_a_bag_that_is_cut_off_is_one_line(ros: Ros, tmp_path: Path) -> None:
     path = ros.write(tmp_path, _drive(ros, frames=30))
     file = path if path.is_file() else next(file for file in path.iterdir() if file.suffix != ".yaml")
     file.write_bytes(file.read_bytes()[: file.stat().st_size * 3 // 5])
-    with pytest.raises(InputError, match=r"bag drive.*|cut off or damaged|cannot") as caught:
-        source = open_ros_bag(path, TopicOptions("/cam/image_raw"))
-        for index in range(30):
-            source.frame(index)
-    assert "cut off or damaged" in str(caught.value)
+    with pytest.raises(InputError, match=r"bag .*drive.*: cut off or damaged") as caught:
+        _read_all(path)
     assert "\n" not in str(caught.value)
     file.write_bytes(b"nothing of the kind")
     with pytest.raises(InputError, match="cut off or damaged"):
