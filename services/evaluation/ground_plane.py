@@ -20,6 +20,10 @@ class GroundPlane(NamedTuple):
         return points[:, self.axes]
 
 
+FLAT = GroundPlane((0, 1), ("x", "y"))
+"""of a frame with z up (REP-103)"""
+
+
 def ground_plane(world_from_camera: npt.NDArray[np.float64]) -> GroundPlane:
     """The plane across the axis nearest to where the cameras' optical y (down) points; poses (N, 4, 4), N > 0."""
     down = world_from_camera[:, :3, 1].mean(axis=0)

@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 
 from services.cli.evaluate.density import density
 from services.cli.evaluate.flow import flow
+from services.cli.evaluate.map import evaluate_map
 from services.cli.evaluate.masks import masks
 from services.cli.evaluate.moving import moving
 from services.cli.evaluate.run import run
@@ -41,6 +42,7 @@ evaluate_app = typer.Typer(
 evaluate_app.command()(run)
 evaluate_app.command()(trajectory)
 evaluate_app.command()(density)
+evaluate_app.command("map")(evaluate_map)
 evaluate_app.command()(masks)
 evaluate_app.command()(moving)
 evaluate_app.command()(flow)

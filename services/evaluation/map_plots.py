@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a map's error: where it is off the surface, and which labels are taken for which."""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from services.evaluation.figure import finish_top_view, new_figure, save_figure
+from services.evaluation.ground_plane import GroundPlane
+from services.evaluation.map_error import LABELS, MapError
+from services.evaluation.map_table import SAID
+from services.formats.point_cloud import LabelledPoints
+
+_DRAWN_SURFACE_POINTS = 40_000
+_OUTLIERS = 0.5
+_WORST_SHOWN = 95.0
+
+
+def plot_map_error(
+    landmarks: LabelledPoints, surface: LabelledPoints, error: MapError, plane: GroundPlane, path: Path
+) -> None:
+    """Top view of the landmarks that were compared, in the colour of their distance, over the surface in grey."""
+    figure = new_figure()
+    axes = figure.add_subplot()
+    step = max(1, len(surface) // _DRAWN_SURFACE_POINTS)
+    under = plane.project(surface.position[::step])
+    axes.scatter(under[:, 0], under[:, 1], s=1, color="#cccccc", linewidths=0, label="surface", rasterized=True)
+    compared = np.isfinite(error.landmark_distance_m)
+    distance = error.landmark_distance_m[compared]
+    places = plane.project(landmarks.position[compared])
+    farthest = max(float(np.percentile(distance, _WORST_SHOWN)), 1e-6)
+    colours = {"c": distance, "cmap": "viridis_r", "vmin": 0.0, "vmax": farthest}
+    shown = axes.scatter(places[:, 0], places[:, 1], s=4, linewidths=0, label="landmarks", **colours)
+    figure.colorbar(shown, ax=axes, extend="max", label="distance to the surface [m]", shrink=0.7)
+    _limit_to(axes, np.concatenate((under, places)))
+    axes.set_title(
+        f"map against surface: median {error.accuracy.median_m:.3f} m, mean {error.accuracy.mean_m:.3f} m"
+        f" ({error.accuracy.points} of {error.landmarks} landmarks)"
+    )
+    finish_top_view(axes, plane, "m", marker_scale=4.0)
+    save_figure(figure, path)
+
+
+def plot_label_confusion(error: MapError, path: Path) -> None:
+    """What the landmarks near a surface are, by row, and what the map calls them, as shares of the row."""
+    figure = new_figure(height_in=4.2, width_in=6.5)
+    axes = figure.add_subplot()
+    rows = error.confusion.sum(axis=1, keepdims=True)
+    shares = np.divide(error.confusion, rows, out=np.zeros(error.confusion.shape), where=rows > 0)
+    axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
+    for row, counts in enumerate(error.confusion.tolist()):
+        for column, count in enumerate(counts):
+            colour = "white" if shares[row, column] > 0.5 else "black"
+            text = f"{count}\n{shares[row, column]:.1%}" if rows[row, 0] else "-"
+            axes.text(column, row, text, ha="center", va="center", color=colour, fontsize=9)
+    axes.set_xticks(range(len(SAID)), SAID)
+    axes.set_yticks(range(len(LABELS)), SAID[: len(LABELS)])
+    axes.set_xlabel("the map says")
+    axes.set_ylabel("it is")
+    accuracy = "undefined" if error.label_accuracy is None else f"{error.label_accuracy:.3f}"
+    axes.set_title(f"labels of landmarks: accuracy {accuracy}")
+    save_figure(figure, path)
+
+
+def _limit_to(axes: Axes, places: npt.NDArray[np.float64]) -> None:
+    low, high = np.percentile(places, (_OUTLIERS, 100 - _OUTLIERS), axis=0)
+    margin = 0.05 * float((high - low).max())
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
