@@ -127,7 +127,7 @@ class FoxgloveLog:
 
     def _message(self, topic: str, place: LoggedMessage) -> Any:
         with self._as_input_error():
-            at = self._reader.iter_messages([topic], place.recorded_ns, place.recorded_ns + 1)
+            at = self._reader.iter_messages([topic], starting_at=place.recorded_ns, ending_at=place.recorded_ns)
             _, _, record = next(islice(at, place.number, None))
             return self._parsed(topic, record.data)
 

@@ -159,11 +159,14 @@ class LiveCamera:
                 continue
             if capture is not None:
                 capture.release()
+                capture = None
+            if self._closed.is_set():
+                break
             wait_s = self._backoff_s[min(tries, len(self._backoff_s) - 1)]
             tries += 1
             self._log.warning("camera_is_lost", camera=self._name, tries=tries, next_try_in_s=f"{wait_s:g}")
-            self._closed.wait(wait_s)
-            capture = None if self._closed.is_set() else self._open_capture()
+            if not self._closed.wait(wait_s):
+                capture = self._open_capture()
         if capture is not None:
             capture.release()
 

@@ -54,6 +54,7 @@ def _read_head(path: Path) -> _Head | None:
     with path.open("rb") as stream:
         if stream.read(len(MAGIC)) != MAGIC:
             return None
+        stream.seek(0)
         try:
             reader = make_reader(stream)
             header: Header = reader.get_header()
