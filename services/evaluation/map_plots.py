@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
+from schemas.records import MotionState
 from services.evaluation.figure import finish_top_view, new_figure, save_figure
 from services.evaluation.ground_plane import GroundPlane
 from services.evaluation.map_error import LABELS, MapError
@@ -24,15 +25,15 @@ def plot_map_error(
     """Top view of the landmarks that were compared, in the colour of their distance, over the surface in grey."""
     figure = new_figure()
     axes = figure.add_subplot()
-    step = max(1, len(surface) // _DRAWN_SURFACE_POINTS)
-    under = plane.project(surface.position[::step])
+    standing = surface.chosen(surface.state != MotionState.MOVING)
+    under = plane.project(standing.position[:: max(1, len(standing) // _DRAWN_SURFACE_POINTS)])
     axes.scatter(under[:, 0], under[:, 1], s=1, color="#cccccc", linewidths=0, label="surface", rasterized=True)
     compared = np.isfinite(error.landmark_distance_m)
     distance = error.landmark_distance_m[compared]
     places = plane.project(landmarks.position[compared])
     farthest = max(float(np.percentile(distance, _WORST_SHOWN)), 1e-6)
-    colours = {"c": distance, "cmap": "viridis_r", "vmin": 0.0, "vmax": farthest}
-    shown = axes.scatter(places[:, 0], places[:, 1], s=4, linewidths=0, label="landmarks", **colours)
+    x, y = places.T
+    shown = axes.scatter(x, y, 4, distance, cmap="viridis_r", vmin=0.0, vmax=farthest, linewidths=0, label="landmarks")
     figure.colorbar(shown, ax=axes, extend="max", label="distance to the surface [m]", shrink=0.7)
     _limit_to(axes, np.concatenate((under, places)))
     axes.set_title(

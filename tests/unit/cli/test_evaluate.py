@@ -57,7 +57,7 @@ def _parabola(path: str, skip: int = 0, count: int = 10, later_s: float = 0.0) -
 
 
 def test_every_subcommand_explains_itself(kinemap: Kinemap) -> None:
-    for subcommand in ("run", "trajectory"):
+    for subcommand in ("run", "trajectory", "density", "map"):
         ended = kinemap(subcommand, "--help")
         assert (ended.code, f"Usage: kinemap evaluate {subcommand}" in ended.out) == (0, True)
 
@@ -147,3 +147,54 @@ def test_only_runs_are_compared(kinemap: Kinemap) -> None:
     _one_line(kinemap("runs", "a.tum"), "runs/report.json: no such report")
     _one_line(kinemap("run", "runs", "a.tum"), "runs/report.json: no such report")
     _one_line(kinemap("run", "a.tum", "runs"), "a.tum: expected the folders of runs")
+
+
+def _ply(path: str, *rows: str) -> Path:
+    header = (
+        f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\nproperty float x\nproperty float y\nproperty float z\n"
+    )
+    Path(path).write_text(header + "property uchar state\nend_header\n" + "".join(f"{row}\n" for row in rows))
+    return Path(path)
+
+
+def test_a_map_is_aligned_by_its_path_and_held_against_a_surface(kinemap: Kinemap) -> None:
+    surface = _ply("surface.ply", "0 1 0 0", "2 1 0 0", "4 1 0 1")
+    # The map is half as large as the world, as its path says.
+    points = _ply("map.ply", "0 0.5 0 0", "1 0.5 0 0", "2 0.5 0.05 1")
+    Path("truth.tum").write_text("".join(f"{i} {i} 0 0 0 0 0 1\n" for i in range(5)))
+    Path("path.tum").write_text("".join(f"{i} {i / 2} 0 0 0 0 0 1\n" for i in range(4)))
+    aligned = ("--trajectory", "path.tum", "--truth", "truth.tum", "--json", "map.json", "--plots", "plots")
+    ended = kinemap("map", points, "--surface", surface, *aligned)
+    assert ended.code == 0, ended
+    assert "sim3, scale 2, by 4 of 5 poses (80.0%)" in ended.out
+    found = json.loads(Path("map.json").read_text())
+    assert found["accuracy"]["mean_m"] == pytest.approx(0.1 / 3, abs=1e-6)
+    assert (found["label_accuracy"], found["completeness"]["share_near"]) == (1.0, 1.0)
+    assert Path("plots/map_error.png").is_file()
+    assert Path("plots/map_labels.png").is_file()
+    ended = kinemap("map", points, "--surface", surface)
+    assert (ended.code, "none: the map is taken to be in the surface's frame" in ended.out) == (0, True)
+
+
+def test_nonsense_maps(kinemap: Kinemap) -> None:
+    points, path = _ply("map.ply", "0 0 0 0"), _parabola("path.tum")
+    _one_line(kinemap("map", points), "map.ply: expected --surface with the true surface")
+    _one_line(kinemap("map", points, "--surface", "none.ply"), "none.ply: cannot be read (No such file")
+    _one_line(kinemap("map", points, "--surface", points, "--truth", path), "expected both or neither")
+    _one_line(kinemap("map", _ply("nan.ply", "0 nan 0 0"), "--surface", points), "nan.ply: point 1 of 1 is not finite")
+    _one_line(kinemap("map", _ply("empty.ply"), "--surface", points), "empty.ply: no point of what stands")
+    _one_line(kinemap("map", points, "--surface", points, "--within", "-3"), "within -3 m, expected a number above 0")
+    late = _parabola("late.tum", later_s=50.0)
+    aligned = ("--trajectory", late, "--truth", path)
+    _one_line(kinemap("map", points, "--surface", points, *aligned), "0 poses of late.tum are within 10 ms of path.tum")
+    Path("folder").mkdir()
+    _one_line(kinemap("map", "folder"), "folder/map.pcd: cannot be read (No such file")
+
+
+def test_nonsense_densities(kinemap: Kinemap) -> None:
+    _one_line(kinemap("density", "none.mcap"), "none.mcap: no such file")
+    Path("folder").mkdir()
+    _one_line(kinemap("density", "folder"), "folder: no run here")
+    _one_line(kinemap("density", "folder", "--min-height", "nan"), "--min-height nan: expected pixels, 0 or more")
+    Path("a.mcap").write_text("no session")
+    _one_line(kinemap("density", "a.mcap"), "a.mcap: not an MCAP file")
