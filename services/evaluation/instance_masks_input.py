@@ -45,14 +45,14 @@ class MaskInput:
         """The ids of the categories named; without names, of those that have a true instance.
 
         Raises:
-            InputError: a name that the truth does not know; says those it knows.
+            InputError: a name of which the truth has no instance; says those it has.
         """
-        by_name = {category.name: category.category_id for category in self.truth.categories}
+        present = {annotation.category_id for annotation in self.truth.annotations}
+        by_name = {c.name: c.category_id for c in self.truth.categories if c.category_id in present}
         for name in names:
             if name not in by_name:
-                known = ", ".join(by_name) or "none"
+                known = ", ".join(by_name) or "those of a truth that is not empty"
                 raise InputError(f"category {name!r}: not in the truth, expected one of {known}")
-        present = {annotation.category_id for annotation in self.truth.annotations}
         return sorted({by_name[name] for name in names} if names else present)
 
 

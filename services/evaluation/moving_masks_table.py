@@ -10,13 +10,18 @@ from services.evaluation.moving_masks import MaskClass, MovingMaskScore
 from services.evaluation.moving_masks_score import FlagRules, MovingMaskResult
 from services.evaluation.run_outcome import Report
 
-NAMES = {MaskClass.BACKGROUND: "background", MaskClass.NON_MOVING: "non-moving", MaskClass.MOVING: "moving"}
+_NAMES = {MaskClass.BACKGROUND: "background", MaskClass.NON_MOVING: "non-moving", MaskClass.MOVING: "moving"}
+
+
+def class_names(score: MovingMaskScore) -> dict[MaskClass, str]:
+    """What to call the classes that the masks know."""
+    return {**_NAMES, MaskClass.BACKGROUND: "everything else"} if score.binary else _NAMES
 
 
 def moving_rows(result: MovingMaskResult, rules: FlagRules) -> list[ComparisonRow]:
     """One row a measure; a dash where nothing of the kind is there."""
     total = result.total
-    names = {**NAMES, MaskClass.BACKGROUND: "everything else"} if total.binary else NAMES
+    names = class_names(total)
     rows = [("frames", str(len(result.by_frame)))]
     rows += [(f"IoU, {names[kind]}", _number(total.iou(kind))) for kind in reversed(total.classes)]
     rows += [
@@ -42,7 +47,7 @@ def describe_moving(result: MovingMaskResult, rules: FlagRules) -> Report:
     return {
         **_describe(result.total),
         "pixels": {
-            NAMES[true]: {NAMES[seen]: int(result.total.confusion[true, seen]) for seen in result.total.classes}
+            _NAMES[true]: {_NAMES[seen]: int(result.total.confusion[true, seen]) for seen in result.total.classes}
             for true in result.total.classes
         },
         "precision": result.total.precision,
@@ -63,7 +68,7 @@ def describe_moving(result: MovingMaskResult, rules: FlagRules) -> Report:
 
 
 def _describe(score: MovingMaskScore) -> Report:
-    return {"iou": {NAMES[kind]: score.iou(kind) for kind in score.classes}, "mean_iou": score.mean_iou}
+    return {"iou": {_NAMES[kind]: score.iou(kind) for kind in score.classes}, "mean_iou": score.mean_iou}
 
 
 def _median_iou(result: MovingMaskResult) -> float | None:

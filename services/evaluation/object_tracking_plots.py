@@ -45,7 +45,7 @@ def plot_sequences(scores: Mapping[str, ClassScore], path: Path) -> None:
             axes.bar(places + 0.27 * (number - 1), values, width=0.25, color=colour, label=name)
         axes.set_xticks(places, list(known))
         axes.set_ylim(0.0, 1.03)
-        axes.set_title(category)
+        axes.set_title(f"{category}, by sequence")
         axes.grid(visible=True, axis="y", linewidth=0.3)
         axes.set_axisbelow(True)
         axes.legend(loc="upper right", fontsize=8, ncols=3)

@@ -19,7 +19,7 @@ from services.evaluation.optical_flow_input import FlowPair, read_flow
 from services.evaluation.optical_flow_score import FlowScore
 from services.formats.kitti_flow import FlowImage
 
-_LONGEST_PERCENTILE = 99.0
+_LONGEST_PERCENTILE = 90.0
 _SHORTEST_SHOWN_PX = 0.05
 _LONGEST_SHOWN_PX = 100.0
 

@@ -29,16 +29,16 @@ def flow(
     from services.evaluation.optical_flow_score import flow_score
     from services.evaluation.optical_flow_table import COLUMNS, describe_flow, flow_rows
 
+    folder = None if plots is None else plots_folder(plots)
     pairs = find_flow_pairs(found, truth, not_occluded)
     score = flow_score(pairs, bar)
     print_table(COLUMNS, flow_rows(score))
     if pairs.missing:
         print(f"{len(pairs.missing)} true images have no flow in {found} and do not count, {pairs.missing[0]} first")
     keep_json({"found": str(found), "truth": str(truth), "missing": pairs.missing, **describe_flow(score)}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.optical_flow_plots import plot_flow_errors, plot_flow_pair
 
-        folder = plots_folder(plots)
         plot_flow_errors(score, folder / "flow_errors.png")
         worst = sorted(pairs.pairs, key=lambda pair: -(score.by_image[pair.name][1] or 0.0))[:_PICTURES]
         for pair in bar(worst, "drawing"):

@@ -35,6 +35,7 @@ def masks(
     from services.evaluation.instance_masks_input import read_mask_input
     from services.evaluation.instance_masks_table import MEAN, describe_masks, mask_rows
 
+    folder = None if plots is None else plots_folder(plots)
     rules = FoundRules(minimum_height_px=min_height, minimum_score=min_score)
     given = read_mask_input(found, truth, bar)
     ids = given.category_ids(category or [])
@@ -51,9 +52,8 @@ def masks(
     frames = {"without_result": given.without_result, "without_truth": given.without_truth}
     measured = describe_masks(score, tall, rules)
     keep_json({"found": str(found), "truth": str(truth), "frames": frames, **measured}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.instance_masks_plots import plot_precision_by_iou, plot_precision_recall
 
-        folder = plots_folder(plots)
         plot_precision_recall(tall, rules, folder / "precision_recall.png")
         plot_precision_by_iou(score, folder / "precision_by_iou.png")

@@ -31,6 +31,7 @@ def moving(
     from services.evaluation.moving_masks_score import FlagRules, score_moving_masks
     from services.evaluation.moving_masks_table import describe_moving, moving_rows
 
+    folder = None if plots is None else plots_folder(plots)
     rules = FlagRules(minimum_height_px=min_height)
     result = score_moving_masks(found, truth, rules, bar)
     print_table([found.resolve().name], moving_rows(result, rules))
@@ -39,9 +40,8 @@ def moving(
     if result.without_truth:
         print(f"{result.without_truth} frames of {found} have no truth and do not count")
     keep_json({"found": str(found), "truth": str(truth), **describe_moving(result, rules)}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.moving_masks_plots import plot_confusion, plot_iou_over_frames
 
-        folder = plots_folder(plots)
         plot_confusion(result, folder / "moving_confusion.png")
         plot_iou_over_frames(result, folder / "moving_iou.png")

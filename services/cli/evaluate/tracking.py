@@ -32,14 +32,14 @@ def tracking(
     from services.evaluation.object_tracking_score import tracking_scores
     from services.evaluation.object_tracking_table import describe_tracking, tracking_rows
 
+    folder = None if plots is None else plots_folder(plots)
     pairs = read_sequence_pairs(found, truth, bar)
     scores = tracking_scores(pairs, known_categories(pairs, category or []), bar)
     print_table(list(scores), tracking_rows(scores))
     keep_json({"found": str(found), "truth": str(truth), **describe_tracking(scores)}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.object_tracking_plots import plot_hota_by_iou, plot_sequences
 
-        folder = plots_folder(plots)
         plot_hota_by_iou(scores, folder / "hota_by_iou.png")
         if len(pairs) > 1:
             plot_sequences(scores, folder / "hota_by_sequence.png")
