@@ -77,7 +77,7 @@ def _open_whole(given: str, options: SourceOptions, street: DriveOptions) -> Sou
     if given == SIMULATOR:
         return Simulator(street)
     if is_live(given):
-        from services.camera.sources.live_camera import open_live_camera
+        from services.camera.sources.opencv_camera import open_live_camera
 
         return open_live_camera(given, calibration=options.calibration)
     path = Path(given)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A camera that sees now: a video device (V4L2) or a stream (RTSP, HTTP), read by OpenCV. The newest frame wins."""
+"""A camera that sees now: the newest frame wins, and one that goes away is opened again."""
 
-import math
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, Protocol
 
 import cv2
@@ -13,17 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from schemas.records import CameraCalibration, Image
-from services.camera.sources.calibration_file import find_calibration, read_calibration
-from services.camera.sources.live_address import device_number, without_credentials
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 from services.runtime.log import get_logger
 
-ASSUMED_FIELD_OF_VIEW_DEG = 60.0
-"""horizontally, of a camera whose calibration nobody gave"""
 _ASSUMED_RATE_HZ = 30.0
 _FASTEST_HZ = 1000.0
-_STREAM_TIMEOUT_MS = 5000
+STREAM_TIMEOUT_MS = 5000
+"""how long a silent stream is waited for"""
 _BACKOFF_S = (0.5, 1.0, 2.0, 4.0, 8.0)
 
 
@@ -143,7 +138,7 @@ class LiveCamera:
             self._closed.set()
             self._changed.notify_all()
         # A stream that is silent keeps its reader until the time-out.
-        self._thread.join(timeout=_STREAM_TIMEOUT_MS / 1e3 + 1.0)
+        self._thread.join(timeout=STREAM_TIMEOUT_MS / 1e3 + 1.0)
 
     def _watch(self, capture: Capture | None) -> None:
         tries = 0
@@ -182,45 +177,3 @@ class LiveCamera:
         with self._changed:
             self._newest = Image(self._last_ns, pixels)
             self._changed.notify_all()
-
-
-def open_live_camera(given: str, *, calibration: Path | None = None) -> LiveCamera:
-    """The camera at an address that `is_live`. Without a calibration file its field of view is assumed.
-
-    Raises:
-        InputError: it cannot be opened, or the calibration cannot be used.
-    """
-    name = f"camera {without_credentials(given)}"
-    if calibration is None:
-        note = (
-            f"no calibration: a horizontal field of view of {ASSUMED_FIELD_OF_VIEW_DEG:g} degrees is assumed, without "
-            "distortion; camera.calibration names a file that knows better"
-        )
-        return LiveCamera(name, lambda: _open_capture(given), assumed_calibration, notes=(note,))
-    model = read_calibration(find_calibration(calibration))
-    return LiveCamera(name, lambda: _open_capture(given), lambda size: model.for_images(size, Path(name)).record(0))
-
-
-def assumed_calibration(size: tuple[int, int]) -> CameraCalibration:
-    """A pinhole camera of the assumed field of view, looking through the middle of its images."""
-    width, height = size
-    focal_px = width / 2 / math.tan(math.radians(ASSUMED_FIELD_OF_VIEW_DEG) / 2)
-    intrinsics = np.array([[focal_px, 0.0, width / 2], [0.0, focal_px, height / 2], [0.0, 0.0, 1.0]])
-    return CameraCalibration(0, width, height, intrinsics)
-
-
-def _open_capture(given: str) -> Capture | None:
-    number = device_number(given)
-    if number is not None:
-        capture = cv2.VideoCapture(number, cv2.CAP_V4L2)
-        # The driver would keep frames that are old when they are asked for.
-        capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
-    else:
-        timeouts = (cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, cv2.CAP_PROP_READ_TIMEOUT_MSEC)
-        capture = cv2.VideoCapture(
-            given, cv2.CAP_FFMPEG, [value for option in timeouts for value in (option, _STREAM_TIMEOUT_MS)]
-        )
-    if capture.isOpened():
-        return capture
-    capture.release()
-    return None

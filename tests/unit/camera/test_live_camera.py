@@ -13,7 +13,8 @@ import numpy.typing as npt
 import pytest
 
 from services.camera.sources.live_address import is_live, without_credentials
-from services.camera.sources.live_camera import LiveCamera, assumed_calibration, open_live_camera
+from services.camera.sources.live_camera import LiveCamera
+from services.camera.sources.opencv_camera import assumed_calibration, open_live_camera
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 
