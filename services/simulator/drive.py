@@ -3,28 +3,41 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
-from services.simulator.actors.actor import Actor, ActorState
-from services.simulator.camera.pinhole import PinholeCamera
-from services.simulator.frame import SimulatedFlow, SimulatedFrame, SimulatedInstance
+from services.simulator.actors.actor import Actor
+from services.simulator.camera.camera import Camera
+from services.simulator.camera.sensor import Sensor
+from services.simulator.camera.timeline import Timeline
+from services.simulator.frame import SimulatedFlow, SimulatedFrame
 from services.simulator.options import DriveOptions
-from services.simulator.rendering.contact import Footprint
-from services.simulator.rendering.flow import View, flow_between
-from services.simulator.rendering.renderer import Renderer, Surfaces
-from services.simulator.rendering.triangles import TriangleTable, joined, table_of
+from services.simulator.rendering.bands import Bands
+from services.simulator.rendering.flow import MovedTriangles, View, flow_between
+from services.simulator.rendering.instances import visible_instances
+from services.simulator.rendering.light import LIGHTS
+from services.simulator.rendering.nearest import Hits
+from services.simulator.rendering.renderer import RenderedView, Renderer
+from services.simulator.rendering.scene import Moment, Scene
+from services.simulator.rendering.shading import Shader
 from services.simulator.worlds.build import build_world
 
-_VIEW_RANGE_M = 180.0
-"""Moving actors farther away than this are left out: three pixels of the default lens."""
+Image = NDArray[np.uint8]
+Floats = NDArray[np.float64]
+
+_KEPT = 2
+"""Moments of which the surfaces seen are kept: a frame's flow looks at the next one, which is mostly asked for next."""
 
 
 class Drive:
     """A drive through a world. `render(i)` and `flow(i)` are pure functions of (options, i), in any order.
 
-    camera: K, width, height. actors: everybody, also those not in sight. frame_count: frames of the drive.
+    camera: K, lens, width, height. actors: everybody, also those not in sight. frame_count: frames of the drive.
+    Not to be used by two threads at a time.
 
     Raises:
         InputError: options that cannot be met.
@@ -32,15 +45,19 @@ class Drive:
 
     def __init__(self, options: DriveOptions | None = None) -> None:
         self.options = options or DriveOptions()
-        self.camera = PinholeCamera.from_options(self.options)
-        world = build_world(self.options)
+        self.camera = Camera.from_options(self.options)
+        self._timeline = Timeline(self.options)
+        self._sensor = Sensor(self.options)
+        # The world has to reach as far as a drive whose missing frames had come.
+        world = build_world(replace(self.options, frames=self._timeline.times))
         self.actors: list[Actor] = world.actors
         self.camera_path = world.camera_path
-        table = table_of(world.mesh, world.mesh.vertices, np.zeros(len(world.mesh.triangles), np.int32))
-        self._still = {actor.instance_id: actor.at(0.0) for actor in self.actors if actor.always_still}
-        parked = [_table_at(actor, self._still[actor.instance_id]) for actor in self.actors if actor.always_still]
-        self._static = Surfaces(joined([table, *parked]), self.options.threads)
-        self._renderer = Renderer(self.camera, self._static, world.atlas, world.sky_texture)
+        bands = Bands(self.options.threads)
+        light, shadows = world.light or LIGHTS[self.options.light], self.options.shadows
+        self._scene = Scene(world, self.camera, bands.threads, self.options.stereo_baseline_m, shadows)
+        shader = Shader(world.atlas, world.atlas.index[world.sky_texture], light)
+        self._renderer = Renderer(self.camera, self._scene.static, shader, bands, shadows)
+        self._seen: OrderedDict[int, tuple[Moment, Hits]] = OrderedDict()
 
     @property
     def frame_count(self) -> int:
@@ -49,10 +66,10 @@ class Drive:
 
     def timestamp_ns(self, index: int) -> int:
         """Capture time of a frame, nanoseconds since the start."""
-        return self.options.timestamp_ns(self._checked(index))
+        return self._timeline.timestamp_ns(self._checked(index))
 
-    def world_from_camera(self, index: int) -> NDArray[np.float64]:
-        """Camera pose of a frame, 4x4, without rendering it."""
+    def world_from_camera(self, index: int) -> Floats:
+        """Pose of the (left) camera at a frame, 4x4, without rendering it."""
         return self.camera_path.world_from_camera(self._time_s(index))
 
     def render(self, index: int) -> SimulatedFrame:
@@ -61,96 +78,83 @@ class Drive:
         Raises:
             InputError: no such frame.
         """
-        t_s = self._time_s(index)
-        pose = self.camera_path.world_from_camera(t_s)
-        near = self._actors_near(pose, t_s)
-        footprints = [Footprint(state.world_from_object, *actor.size_m[:2]) for actor, state in near]
-        view = self._renderer.render(pose, self._moving_surfaces(near), footprints)
-        depth = np.where(np.isfinite(view.hits.depth_m), view.hits.depth_m, np.float32(0.0))
+        moment, hits = self._seen_at(index)
+        view = self._view(moment, hits)
+        shown = self._timeline.shown(index)
+        image, right = self._images(shown) if shown != index else self._images(index, view)
+        depth = np.where(np.isfinite(hits.depth_m), hits.depth_m, np.float32(0.0))
         labels = view.instance.astype(np.uint16)
-        instances = _visible(labels, near)
-        return SimulatedFrame(index, self.timestamp_ns(index), view.image, depth, labels, instances, pose)
+        found = visible_instances(labels, moment.near)
+        pose = moment.world_from_camera
+        return SimulatedFrame(index, self.timestamp_ns(index), image, depth, labels, found, pose, right)
 
     def flow(self, index: int) -> SimulatedFlow:
-        """Exact flow from the frame at `index` to the next one.
+        """Exact flow of the (left) camera from the frame at `index` to the next one.
 
         Raises:
             InputError: no such frame, or it is the last one.
         """
-        t_s, next_t_s = self._time_s(index), self._time_s(index + 1)
-        pose, next_pose = self.camera_path.world_from_camera(t_s), self.camera_path.world_from_camera(next_t_s)
-        now = self._renderer.cast(pose, self._moving_surfaces(self._actors_near(pose, t_s)))
-        then = self._renderer.cast(next_pose, self._moving_surfaces(self._actors_near(next_pose, next_t_s)))
-        corners_now, corners_then = (
-            np.concatenate(
-                [
-                    self._static.table.corner,
-                    *(
-                        actor.vertices_in_world(actor.at(t))[actor.mesh.triangles]
-                        for actor, _ in self._actors_near(pose, t_s)
-                        if not actor.always_still
-                    ),
-                ]
+        next_t_s = self._time_s(index + 1)
+        moment, hits = self._seen_at(index)
+        next_moment, next_hits = self._seen_at(index + 1)
+        moved = self._moved(moment, next_t_s)
+        then = View(next_moment.world_from_camera, next_hits)
+        return flow_between(self.camera, hits, moment.world_from_camera, moved, then)
+
+    def _images(self, index: int, view: RenderedView | None = None) -> tuple[Image, Image | None]:
+        """What both cameras deliver of the light at a frame."""
+        baseline_m = self.options.stereo_baseline_m
+        if self._timeline.is_black(index):
+            black = [self._sensor.black((self.camera.height, self.camera.width, 3), index, eye) for eye in range(2)]
+            return black[0], black[1] if baseline_m else None
+        moment, hits = self._seen_at(index)
+        left = self._exposed(index, moment, view or self._view(moment, hits), 0.0)
+        if not baseline_m:
+            return left, None
+        pose = _beside(moment.world_from_camera, baseline_m)
+        seen = self._renderer.render(pose, moment.moving, moment.footprints)
+        return left, self._exposed(index, moment, seen, baseline_m)
+
+    def _exposed(self, index: int, moment: Moment, view: RenderedView, baseline_m: float) -> Image:
+        flow_px = None
+        if self._sensor.blur is not None:
+            next_t_s = moment.t_s + 1.0 / self.options.rate_hz
+            pose, next_pose = (
+                _beside(pose, baseline_m)
+                for pose in (moment.world_from_camera, self.camera_path.world_from_camera(next_t_s))
             )
-            for t in (t_s, next_t_s)
-        )
-        return flow_between(self.camera, View(now, pose), View(then, next_pose), corners_now, corners_then)
+            moved = self._moved(moment, next_t_s)
+            flow_px = flow_between(self.camera, view.hits, pose, moved, View(next_pose, None)).flow_px
+        return self._sensor.exposed(view.image, flow_px, index, moment.t_s, int(baseline_m > 0.0))
+
+    def _view(self, moment: Moment, hits: Hits) -> RenderedView:
+        return self._renderer.render(moment.world_from_camera, moment.moving, moment.footprints, hits)
+
+    def _seen_at(self, index: int) -> tuple[Moment, Hits]:
+        """The moment of a frame and what the (left) camera sees of it."""
+        if index not in self._seen:
+            moment = self._scene.at(self._time_s(index))
+            self._seen[index] = moment, self._renderer.cast(moment.world_from_camera, moment.moving)
+        self._seen.move_to_end(index)
+        if len(self._seen) > _KEPT:
+            self._seen.popitem(last=False)
+        return self._seen[index]
+
+    def _moved(self, moment: Moment, next_t_s: float) -> MovedTriangles:
+        before = moment.moving.table.corner if moment.moving else np.zeros((0, 3, 3))
+        return MovedTriangles(len(self._scene.static.table), before, moment.corners_at(next_t_s))
 
     def _time_s(self, index: int) -> float:
-        return self.options.timestamp_ns(self._checked(index)) * 1e-9
+        return self._timeline.timestamp_ns(self._checked(index)) * 1e-9
 
     def _checked(self, index: int) -> int:
         if not 0 <= index < self.frame_count:
             raise InputError(f"simulator frame {index}: expected 0 to {self.frame_count - 1}")
         return index
 
-    def _actors_near(self, world_from_camera: NDArray[np.float64], t_s: float) -> list[tuple[Actor, ActorState]]:
-        """Those that may be in sight, in order of their ids."""
-        near = []
-        for actor in self.actors:
-            if actor.always_still:
-                near.append((actor, self._still[actor.instance_id]))
-                continue
-            state = actor.at(t_s)
-            away = state.centre_m[:2] - world_from_camera[:2, 3]
-            ahead = float(away @ world_from_camera[:2, 2])
-            if state.present and ahead > -actor.size_m[0] and float(np.hypot(*away)) < _VIEW_RANGE_M:
-                near.append((actor, state))
-        return near
 
-    def _moving_surfaces(self, near: list[tuple[Actor, ActorState]]) -> Surfaces | None:
-        """Surfaces of those that are not part of the static scene."""
-        tables = [_table_at(actor, state) for actor, state in near if not actor.always_still]
-        return Surfaces(joined(tables), self.options.threads) if tables else None
-
-
-def _visible(labels: NDArray[np.uint16], near: list[tuple[Actor, ActorState]]) -> list[SimulatedInstance]:
-    """Everybody with at least one pixel, in order of their ids."""
-    rows, columns = np.nonzero(labels)
-    ids = labels[rows, columns]
-    found = []
-    for actor, state in near:
-        mine = np.flatnonzero(ids == actor.instance_id)
-        if not len(mine):
-            continue
-        x, y = int(columns[mine].min()), int(rows[mine[0]])
-        box = (x, y, int(columns[mine].max()) - x + 1, int(rows[mine[-1]]) - y + 1)
-        found.append(
-            SimulatedInstance(
-                actor.instance_id,
-                actor.category,
-                state.moving,
-                state.velocity_m_s,
-                state.centre_m,
-                state.heading_rad,
-                actor.size_m,
-                box,
-                len(mine),
-            )
-        )
-    return found
-
-
-def _table_at(actor: Actor, state: ActorState) -> TriangleTable:
-    instance = np.full(len(actor.mesh.triangles), actor.instance_id, np.int32)
-    return table_of(actor.mesh, actor.vertices_in_world(state), instance)
+def _beside(world_from_camera: Floats, baseline_m: float) -> Floats:
+    """Pose of a camera so far to the right."""
+    pose = world_from_camera.copy()
+    pose[:3, 3] += baseline_m * world_from_camera[:3, 0]
+    return pose

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class SimulatedInstance:
-    """One visible car or person.
+    """One visible vehicle or person.
 
     instance_id: its pixels' value in the labels, the same over the whole drive. category: name in COCO.
     moving: speed of at least 0.1 m/s at this frame. velocity_m_s, position_m: world frame, (3,); the position is the
     middle of the cuboid. heading_rad: against world x. size_m: length, width, height of the cuboid.
-    box_px: x, y, width, height round the visible pixels. visible_px: how many there are.
+    box_px: x, y, width, height round the visible pixels. visible_px: how many there are. pitch_rad: of the cuboid's
+    x axis above the plane, upwards positive.
     """
 
     instance_id: int
@@ -28,14 +29,17 @@ class SimulatedInstance:
     size_m: tuple[float, float, float]
     box_px: tuple[int, int, int, int]
     visible_px: int
+    pitch_rad: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class SimulatedFrame:
     """One frame of a drive.
 
-    image: BGR uint8 (H, W, 3). depth_m: float32 (H, W) along the optical axis, 0 = sky. labels: uint16 (H, W), 0 =
-    nobody, else an instance_id. world_from_camera: 4x4; world x forward and y left at the start, z up; camera optical.
+    image: BGR uint8 (H, W, 3); image_right: the same of the second camera, where there is one. Everything else is true
+    of the first camera at this time, also where the image is not (black, or the one of the frame before).
+    depth_m: float32 (H, W) along the optical axis, 0 = sky. labels: uint16 (H, W), 0 = nobody, else an instance_id.
+    world_from_camera: 4x4; world x forward and y left at the start, z up; camera optical.
     """
 
     index: int
@@ -45,6 +49,7 @@ class SimulatedFrame:
     labels: NDArray[np.uint16]
     instances: list[SimulatedInstance]
     world_from_camera: NDArray[np.float64]
+    image_right: NDArray[np.uint8] | None = None
 
 
 @dataclass(frozen=True, slots=True)

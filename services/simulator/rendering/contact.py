@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.camera.pinhole import PinholeCamera
+from services.simulator.camera.camera import Camera
+from services.simulator.rendering.bounds import BOX_CORNERS, windows
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -33,9 +34,9 @@ class Footprint:
 class ContactShade:
     """Darkens the ground round footprints in the image of one camera."""
 
-    def __init__(self, camera: PinholeCamera) -> None:
+    def __init__(self, camera: Camera) -> None:
         self._camera = camera
-        self._x, self._y = camera.normalised(*camera.pixel_grid())
+        self._x, self._y = camera.normalised()
 
     def darken(
         self,
@@ -46,9 +47,14 @@ class ContactShade:
         footprints: Sequence[Footprint],
     ) -> None:
         """Darken `colour` (H, W, 3) in place where `on_ground` (H, W) allows it."""
-        for footprint in footprints:
-            object_from_camera = np.linalg.inv(footprint.world_from_object) @ world_from_camera
-            window = self._window(footprint, object_from_camera)
+        if not footprints:
+            return
+        poses = np.array([footprint.world_from_object for footprint in footprints])
+        near = np.linalg.norm(poses[:, :3, 3] - world_from_camera[:3, 3], axis=1) < _RANGE_M
+        footprints = [footprint for footprint, is_near in zip(footprints, near, strict=True) if is_near]
+        objects_from_camera = np.linalg.inv(poses[near]) @ world_from_camera
+        boxes = windows(self._camera, _shade_boxes(footprints, objects_from_camera))
+        for footprint, object_from_camera, window in zip(footprints, objects_from_camera, boxes, strict=True):
             if window is None:
                 continue
             depth = np.where(on_ground[window], depth_m[window], np.float32(0.0))
@@ -65,19 +71,10 @@ class ContactShade:
             shade = np.float32(_DARKEST) * near * near * (np.float32(3.0) - np.float32(2.0) * near)
             colour[window] *= (np.float32(1.0) - shade)[..., None]
 
-    def _window(self, footprint: Footprint, object_from_camera: Floats) -> tuple[slice, slice] | None:
-        """Part of the image that the shade may cover; None where that is nothing."""
-        if not 0.0 < np.linalg.norm(object_from_camera[:3, 3]) < _RANGE_M:
-            return None
-        half = np.array([0.5 * footprint.length_m, 0.5 * footprint.width_m]) + _REACH_M
-        corners = np.array([[sx * half[0], sy * half[1], z] for sx in (-1, 1) for sy in (-1, 1) for z in (-0.15, 0.25)])
-        points = (corners - object_from_camera[:3, 3]) @ object_from_camera[:3, :3]
-        if points[:, 2].max() < 0.2:
-            return None
-        width, height = self._camera.width, self._camera.height
-        if points[:, 2].min() < 0.2:
-            return np.s_[0:height, 0:width]
-        place = self._camera.project(points)
-        left, top = np.maximum(np.floor(place.min(axis=0)), 0.0).astype(int)
-        right, bottom = np.minimum(np.ceil(place.max(axis=0)) + 1.0, [width, height]).astype(int)
-        return np.s_[top:bottom, left:right] if left < right and top < bottom else None
+
+def _shade_boxes(footprints: Sequence[Footprint], objects_from_camera: Floats) -> Floats:
+    """Corners of the boxes round what may be shaded, in the camera's frame, (F, 8, 3)."""
+    half = np.array([[0.5 * f.length_m + _REACH_M, 0.5 * f.width_m + _REACH_M] for f in footprints]).reshape(-1, 2)
+    low = np.column_stack([-half, np.full(len(half), -_GROUND_M)])
+    corners = np.where(BOX_CORNERS, -low[:, None], low[:, None])
+    return np.asarray((corners - objects_from_camera[:, None, :3, 3]) @ objects_from_camera[:, :3, :3])

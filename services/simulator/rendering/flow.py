@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.camera.pinhole import PinholeCamera
+from services.simulator.camera.camera import Camera
 from services.simulator.frame import SimulatedFlow
-from services.simulator.rendering.renderer import Hits
+from services.simulator.rendering.nearest import Hits
 
 Floats = NDArray[np.float64]
 
@@ -21,46 +21,51 @@ _DEPTH_TOLERANCE, _INVERSE_TOLERANCE = 0.02, 2e-4
 
 
 @dataclass(frozen=True, slots=True)
+class MovedTriangles:
+    """Corners (T, 3, 3), world frame, of triangles at two times; the first one is row `first` of the scene's."""
+
+    first: int
+    before: Floats
+    after: Floats
+
+
+@dataclass(frozen=True, slots=True)
 class View:
-    """Surfaces seen from a pose (world_from_camera, 4x4)."""
+    """Surfaces seen from a pose (world_from_camera, 4x4); None where nobody looked."""
 
-    hits: Hits
     world_from_camera: Floats
+    hits: Hits | None
 
 
-def flow_between(
-    camera: PinholeCamera, now: View, then: View, corners_now: Floats, corners_then: Floats
-) -> SimulatedFlow:
-    """Flow from one view to the next.
+def flow_between(camera: Camera, now: Hits, pose: Floats, moved: MovedTriangles, then: View) -> SimulatedFlow:
+    """Flow from one view to the next, of `moved` triangles as they move, so that limbs of walking people do too.
 
-    The triangles that `now` hits have the corners (T, 3, 3), world frame, given for both times, so that the limbs of
-    walking people move as they do.
+    now: seen from pose (world_from_camera, 4x4). Where nobody looked then, everything counts as visible.
     """
+    next_pose = then.world_from_camera
     columns, rows = camera.pixel_grid()
-    x, y = camera.normalised(columns, rows)
-    hits, world_from_camera = now.hits, now.world_from_camera
-    sky = hits.triangle < 0
-    depth = np.where(sky, _FAR_M, hits.depth_m.astype(np.float64))
+    x, y = camera.normalised()
+    sky = now.triangle < 0
+    depth = np.where(sky, _FAR_M, now.depth_m.astype(np.float64))
     ray = np.stack([x, y, np.ones_like(x)], axis=-1).astype(np.float64)
-    point = ray * depth[..., None] @ world_from_camera[:3, :3].T + world_from_camera[:3, 3]
-    point = np.where(sky[..., None], point, _carried(point, hits.triangle, corners_now, corners_then))
-    next_point = (point - then.world_from_camera[:3, 3]) @ then.world_from_camera[:3, :3]
+    point = ray * depth[..., None] @ pose[:3, :3].T + pose[:3, 3]
+    _carry(point, now.triangle, moved)
+    next_point = (point - next_pose[:3, 3]) @ next_pose[:3, :3]
     place = camera.project(next_point)
-    flow = place - np.stack([columns, rows], axis=-1)
-    visible = _seen_again(place, next_point[..., 2], then.hits)
-    return SimulatedFlow(np.nan_to_num(flow, nan=0.0).astype(np.float32), visible)
+    flow = np.nan_to_num(place - np.stack([columns, rows], axis=-1), nan=0.0).astype(np.float32)
+    visible = np.ones(sky.shape, bool) if then.hits is None else _seen_again(place, next_point[..., 2], then.hits)
+    return SimulatedFlow(flow, visible)
 
 
-def _carried(point: Floats, triangle: NDArray[np.int32], corners_now: Floats, corners_then: Floats) -> Floats:
-    """Points moved with their triangles: position within the triangle's own axes, put back at the later time."""
-    moved = np.any(corners_now != corners_then, axis=(1, 2))
-    which = np.nonzero((triangle >= 0) & moved[triangle])
-    rows = triangle[which]
-    before, after = corners_now[rows], corners_then[rows]
+def _carry(point: Floats, triangle: NDArray[np.int32], moved: MovedTriangles) -> None:
+    """Move points (H, W, 3) with their triangles: by position within a triangle's axes, put back at the later time."""
+    which = np.nonzero(triangle >= moved.first)
+    rows = triangle[which] - moved.first
+    here = np.flatnonzero(np.any(moved.before[rows] != moved.after[rows], axis=(1, 2)))
+    which, rows = tuple(axis[here] for axis in which), rows[here]
+    before, after = moved.before[rows], moved.after[rows]
     relative = np.linalg.solve(_axes(before), (point[which] - before[:, 0])[..., None])
-    result = point.copy()
-    result[which] = after[:, 0] + (_axes(after) @ relative)[..., 0]
-    return result
+    point[which] = after[:, 0] + (_axes(after) @ relative)[..., 0]
 
 
 def _axes(corner: Floats) -> Floats:

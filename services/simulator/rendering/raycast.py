@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from services.runtime.errors import ResourceError
 
-_NO_TRIANGLE = np.uint32(0xFFFFFFFF)
-
 
 def _open3d() -> Any:
     # Imported at the first scene, not with this module: it takes a second and is needed by nobody else.
@@ -26,7 +24,7 @@ def _open3d() -> Any:
 class RayScene:
     """A fixed set of triangles to cast rays against.
 
-    vertices: (V, 3) metres; triangles: (T, 3). Results do not depend on `threads` (0 = all cores).
+    vertices: (V, 3) metres; triangles: (T, 3). Results do not depend on `threads`, at most the cores there are.
     """
 
     def __init__(self, vertices: NDArray[np.float64], triangles: NDArray[np.int32], threads: int) -> None:
@@ -49,6 +47,14 @@ class RayScene:
         rays = np.empty((len(directions), 6), np.float32)
         rays[:, :3] = origin
         rays[:, 3:] = directions
-        found = self._scene.cast_rays(self._tensor(rays), self._threads)
-        triangle = found["primitive_ids"].numpy()
-        return found["t_hit"].numpy(), np.where(triangle == _NO_TRIANGLE, -1, triangle.astype(np.int32))
+        found = self._scene.cast_rays(self._tensor.from_numpy(rays), self._threads)
+        # Open3D's "none" is the largest unsigned number: -1 with a sign.
+        return found["t_hit"].numpy(), found["primitive_ids"].numpy().view(np.int32)
+
+    def covered(self, origins: NDArray[np.float32], direction: NDArray[np.float32], from_m: float) -> NDArray[np.bool_]:
+        """Whether anything lies beyond `from_m` from the origins (N, 3) in a direction (3,) of length 1; (N,)."""
+        rays = np.empty((len(origins), 6), np.float32)
+        rays[:, :3] = origins
+        rays[:, 3:] = direction
+        hit = self._scene.test_occlusions(self._tensor.from_numpy(rays), from_m, float("inf"), self._threads)
+        return np.asarray(hit.numpy(), np.bool_)
