@@ -14,8 +14,11 @@ import pytest
 from schemas import topics
 from schemas.codec import decode, encode
 from schemas.records import FrameAnswer
+from services.camera.configured_delivery import require_realtime
 from services.camera.configured_source import open_configured_source
 from services.camera.service import CameraService
+from services.camera.sources.live_camera import LiveCamera
+from services.camera.sources.opencv_camera import assumed_calibration
 from services.runtime.bus import Message
 from services.runtime.config import Config
 from services.runtime.config.camera import CameraConfig
@@ -23,6 +26,7 @@ from services.runtime.config.delivery import DeliveryConfig
 from services.runtime.config.run import RunConfig
 from services.runtime.errors import InputError
 from services.runtime.fake_bus import FakeBus, FakeNetwork
+from tests.unit.camera.scripted_capture import Cameras, ScriptedCapture
 
 SESSION = "test"
 
@@ -243,3 +247,47 @@ def test_colour_travels_as_it_is(network: FakeNetwork, others: Others, tmp_path:
         cv2.imwrite(str(kitti / "image_0" / f"{index:06d}.png"), pixels)
     _run(network, _config(tmp_path, kitti))
     np.testing.assert_array_equal(others.of(topics.IMAGE)[0][1].pixels, pixels)
+
+
+def _live_config(tmp_path: Path, **delivery: Any) -> Config:
+    config = _config(tmp_path, Path("unused"), **delivery)
+    config.camera = CameraConfig(input="rtsp://user:secret@camera/stream")
+    return config
+
+
+def test_a_live_camera_is_sent_as_it_comes_and_stops_while_it_is_gone(
+    network: FakeNetwork, others: Others, tmp_path: Path
+) -> None:
+    config = _live_config(tmp_path, mode="realtime")
+    capture = ScriptedCapture()
+    capture.show(1)
+    host = Host()
+    ear = FakeBus(network)
+    images = ear.subscribe([topics.IMAGE])
+    with FakeBus(network) as bus:
+        source = LiveCamera("camera test", Cameras(capture), assumed_calibration, backoff_s=(0.01,))
+        thread = threading.Thread(target=CameraService(source, bus, config).run, args=(host,))
+        thread.start()
+        times_ns = []
+        for value in (2, 3):
+            capture.show(value)
+            message = images.receive(10.0)
+            assert message is not None
+            image = decode(topics.IMAGE, message.payload)
+            assert int(image.pixels[0, 0, 0]) == value
+            times_ns.append(image.timestamp_ns)
+        capture.show(None)
+        host.stopping.set()
+        thread.join(timeout=20)
+    ear.close()
+    assert not thread.is_alive()
+    assert times_ns[0] < times_ns[1]
+    assert others.of(topics.END) == []
+
+
+def test_a_live_camera_cannot_be_lossless(network: FakeNetwork, tmp_path: Path) -> None:
+    config = _live_config(tmp_path, mode="lossless")
+    with pytest.raises(InputError, match=r"rtsp://\.\.\.@camera/stream: a live camera cannot repeat a frame") as caught:
+        require_realtime(config)
+    assert "secret" not in str(caught.value)
+    require_realtime(_live_config(tmp_path, mode="realtime"))

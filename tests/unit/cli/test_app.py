@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from services.cli.app import main
+from services.cli.run import resolve_run
 from services.runtime.session_file import SessionFile
 
 
@@ -124,6 +125,8 @@ def test_a_port_in_use_is_said_before_anything_is_written(kinemap: Kinemap) -> N
         (("replay", "none.mcap"), ("none.mcap: no such file",)),
         (("replay", "none.mcap", "--speed", "nan"), ("--speed nan: expected a number above 0",)),
         (("export", "nowhere"), ("nowhere: no run here",)),
+        (("run", "rtsp://me:secret@camera/1", "--set", "delivery.mode=lossless"), ("rtsp://...@camera/1", "realtime")),
+        (("run", "/dev/video97"), ("camera /dev/video97: gives no frame",)),
         (("status",), ("no run in",)),
         (("down",), ("no run in",)),
         (("record", "x", "--bus"), ("expected either an input or --bus",)),
@@ -131,6 +134,19 @@ def test_a_port_in_use_is_said_before_anything_is_written(kinemap: Kinemap) -> N
 )
 def test_wrong_arguments(kinemap: Kinemap, arguments: tuple[str, ...], parts: tuple[str, ...]) -> None:
     _one_line(kinemap(*arguments), *parts)
+
+
+def test_a_live_camera_is_realtime_unless_it_is_asked_for_otherwise(tmp_path: Path) -> None:
+    resolved = resolve_run(None, None, {"camera": {"input": "rtsp://camera/1"}}, tmp_path / "live")
+    assert (resolved.delivery.mode, resolved.camera.input) == ("realtime", "rtsp://camera/1")
+    folder = resolve_run(None, None, {"camera": {"input": str(tmp_path)}}, tmp_path / "folder")
+    assert folder.delivery.mode == "lossless"
+
+
+def test_run_names_every_kind_of_input(kinemap: Kinemap) -> None:
+    said = " ".join(kinemap("run", "--help").out.replace("│", " ").split())
+    kinds = "KITTI, raw, tracking, TUM, EuRoC, ROS 1, ROS 2, MCAP, Foxglove, rtsp://, /dev/video0, 'simulator'"
+    assert [kind for kind in kinds.split(", ") if kind not in said] == []
 
 
 def test_an_unknown_flag_is_one_of_the_parser(kinemap: Kinemap) -> None:
