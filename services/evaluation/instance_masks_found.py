@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -63,18 +64,12 @@ def found_scores(
 ) -> dict[str, FoundScore]:
     """The score of every category asked for, by name.
 
-    Matched as pycocotools does: the surest first, each to the free true mask that it covers best. It passes over
-    instances by their area; here it is given their box's height instead.
+    Matched as pycocotools does: the surest first, each to the free true mask that it covers best.
     """
     rules = rules or FoundRules()
     evaluator = coco_evaluator(truth, found, category_ids)
-    for side in (evaluator.cocoGt, evaluator.cocoDt):
-        for row in side.anns.values():
-            row["area"] = row["bbox"][3]
-    evaluator.params.iouThrs = np.array([rules.minimum_iou])
+    measure_by_height(evaluator, rules)
     evaluator.params.maxDets = [MOST_PER_IMAGE]
-    evaluator.params.areaRng = [[rules.minimum_height_px, np.inf]]
-    evaluator.params.areaRngLbl = ["tall"]
     run_quietly(evaluator, progress, "counting what was found")
     images = len(evaluator.params.imgIds)
     names = {category.category_id: category.name for category in truth.categories}
@@ -82,6 +77,16 @@ def found_scores(
         names[number]: _score(evaluator.evalImgs[place * images : (place + 1) * images], rules.minimum_score)
         for place, number in enumerate(evaluator.params.catIds)
     }
+
+
+def measure_by_height(evaluator: Any, rules: FoundRules) -> None:
+    """Let pycocotools, which passes over instances by their area, do so by their height, at one IoU."""
+    for side in (evaluator.cocoGt, evaluator.cocoDt):
+        for row in side.anns.values():
+            row["area"] = row["bbox"][3]
+    evaluator.params.iouThrs = np.array([rules.minimum_iou])
+    evaluator.params.areaRng = [[rules.minimum_height_px, np.inf]]
+    evaluator.params.areaRngLbl = ["tall"]
 
 
 def _score(images: Sequence[dict[str, npt.NDArray[np.float64]] | None], minimum_score: float) -> FoundScore:

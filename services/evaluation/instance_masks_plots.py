@@ -4,9 +4,14 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from services.evaluation.figure import new_figure, save_figure
 from services.evaluation.instance_masks import THESIS_IOUS, MaskPrecision
+from services.evaluation.instance_masks_confusion import ClassConfusion
 from services.evaluation.instance_masks_found import FoundRules, FoundScore
+
+_DARK = 0.6
 
 
 def plot_precision_recall(found: Mapping[str, FoundScore], rules: FoundRules, path: Path) -> None:
@@ -50,4 +55,22 @@ def plot_precision_by_iou(score: MaskPrecision, path: Path) -> None:
     axes.set_title(f"average precision over IoU, {score.images} images", fontsize=10)
     axes.grid(visible=True, linewidth=0.3)
     axes.legend(loc="lower left", fontsize=8)
+    save_figure(figure, path)
+
+
+def plot_class_confusion(confusion: ClassConfusion, path: Path) -> None:
+    """Counts of true and found categories; a row's colour is its share of the true instances."""
+    names, size = confusion.names, len(confusion.names) + 1
+    share = confusion.counts / np.maximum(confusion.counts.sum(axis=1, keepdims=True), 1)
+    side_in = 2.2 + 0.65 * size
+    figure = new_figure(height_in=side_in, width_in=side_in + 0.6)
+    axes = figure.add_subplot()
+    axes.imshow(share, cmap="Blues", vmin=0.0, vmax=1.0)
+    for row, column in np.argwhere(confusion.counts > 0).tolist():
+        colour = "white" if share[row, column] > _DARK else "black"
+        axes.text(column, row, str(confusion.counts[row, column]), ha="center", va="center", color=colour, fontsize=9)
+    axes.set_xticks(range(size), [*names, "missed"], rotation=45, ha="right")
+    axes.set_yticks(range(size), [*names, "nothing"])
+    axes.set_xlabel("found")
+    axes.set_ylabel("true")
     save_figure(figure, path)

@@ -6,6 +6,7 @@ from dataclasses import asdict
 
 from services.evaluation.comparison import NOTHING, ComparisonRow
 from services.evaluation.instance_masks import THESIS_IOUS, AveragePrecision, MaskPrecision
+from services.evaluation.instance_masks_confusion import ClassConfusion
 from services.evaluation.instance_masks_found import FoundRules, FoundScore
 from services.evaluation.run_outcome import Report
 
@@ -44,13 +45,19 @@ def mask_rows(score: MaskPrecision, found: Mapping[str, FoundScore], rules: Foun
     return rows
 
 
-def describe_masks(score: MaskPrecision, found: Mapping[str, FoundScore], rules: FoundRules) -> Report:
+def describe_masks(
+    score: MaskPrecision, found: Mapping[str, FoundScore], confusion: ClassConfusion, rules: FoundRules
+) -> Report:
     """All of it for JSON; null where the truth has no such instance."""
+    true, seen = [*confusion.names, "nothing"], [*confusion.names, "missed"]
     return {
         "images": score.images,
         "mean": _describe(score.mean),
         "by_category": {
             name: _describe(side) | _describe_found(found[name]) for name, side in score.by_category.items()
+        },
+        "confusion": {
+            name: dict(zip(seen, row.tolist(), strict=True)) for name, row in zip(true, confusion.counts, strict=True)
         },
         "rules": asdict(rules),
     }

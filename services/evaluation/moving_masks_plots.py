@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from schemas.records import MotionState
 from services.evaluation.figure import new_figure, save_figure
@@ -58,6 +59,7 @@ def plot_iou_over_frames(result: MovingMaskResult, path: Path) -> None:
         label = f"{names[kind]}: {over_all:.3f} over all" if over_all is not None else names[kind]
         axes.plot(values, marker=".", markersize=3, linewidth=1.0, color=_COLOURS[kind], label=label)
     axes.set_ylim(-0.02, 1.03)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("frame")
     axes.set_ylabel("IoU")
     axes.grid(visible=True, linewidth=0.3)

@@ -31,6 +31,7 @@ def masks(
 ) -> None:
     """Average precision by pycocotools, its mean over IoU 0 to 1 as in the thesis, and precision and recall."""
     from services.evaluation.instance_masks import mask_precision
+    from services.evaluation.instance_masks_confusion import class_confusion
     from services.evaluation.instance_masks_found import FoundRules, found_scores
     from services.evaluation.instance_masks_input import read_mask_input
     from services.evaluation.instance_masks_table import MEAN, describe_masks, mask_rows
@@ -50,10 +51,16 @@ def masks(
     if given.without_truth:
         print(f"{given.without_truth} frames of {found} have no truth and do not count")
     frames = {"without_result": given.without_result, "without_truth": given.without_truth}
-    measured = describe_masks(score, tall, rules)
+    confusion = class_confusion(given.truth, given.found, rules, bar)
+    measured = describe_masks(score, tall, confusion, rules)
     keep_json({"found": str(found), "truth": str(truth), "frames": frames, **measured}, json_file)
     if folder is not None:
-        from services.evaluation.instance_masks_plots import plot_precision_by_iou, plot_precision_recall
+        from services.evaluation.instance_masks_plots import (
+            plot_class_confusion,
+            plot_precision_by_iou,
+            plot_precision_recall,
+        )
 
         plot_precision_recall(tall, rules, folder / "precision_recall.png")
         plot_precision_by_iou(score, folder / "precision_by_iou.png")
+        plot_class_confusion(confusion, folder / "class_confusion.png")

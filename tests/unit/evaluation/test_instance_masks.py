@@ -11,6 +11,7 @@ from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
 from services.evaluation.instance_masks import mask_precision
+from services.evaluation.instance_masks_confusion import class_confusion
 from services.evaluation.instance_masks_found import FoundRules, found_scores
 from services.formats.coco import (
     CocoAnnotation,
@@ -199,6 +200,22 @@ def test_precision_and_recall_of_tall_objects_by_hand() -> None:
     np.testing.assert_allclose(score.recalls, [1 / 3, 1 / 3, 2 / 3])
     assert score.recall_at(0.6) == pytest.approx(2 / 3)
     assert score.recall_at(0.9) == pytest.approx(1 / 3)
+
+
+def test_confusion_by_hand() -> None:
+    truth, found = _heights(
+        (0, 50, True, 0.9),  # found as what it is
+        (25, 60, True, None),  # missed
+        (50, 20, True, 0.9),  # too small
+        (75, 50, False, 0.7),  # nothing there
+        (100, 45, True, 0.2),  # not surely enough: missed
+        (150, 45, True, 0.8),  # a bus, below
+    )
+    found[-1] = CocoResult(1, BUS, found[-1].mask, 0.8)
+    truth = CocoDataset(truth.images, (*truth.categories, CocoCategory(BUS, "bus")), truth.annotations)
+    confusion = class_confusion(truth, found, FoundRules(0.5, 40.0, 0.3))
+    assert confusion.names == ("car", "bus")
+    assert confusion.counts.tolist() == [[1, 1, 2], [0, 0, 0], [1, 0, 0]]
 
 
 def test_without_a_least_height_it_is_pycocotools_recall(written: Path) -> None:
