@@ -86,6 +86,11 @@ def quads(corners: ArrayLike, uv: ArrayLike, texture: int, tint: Tint = WHITE, o
     )
 
 
+def stretch(u: float = 1.0, v: float = 1.0) -> NDArray[np.float64]:
+    """Texture coordinates of a quad that shows `u` tiles across and `v` tiles down, (4, 2)."""
+    return np.array([[0.0, 0.0], [u, 0.0], [u, v], [0.0, v]])
+
+
 def box(size: Sequence[float], centre: Sequence[float], texture: int, tile_m: float = 1.0, tint: Tint = WHITE) -> Mesh:
     """Axis-aligned box of `size` (x, y, z) metres whose texture repeats every `tile_m` metres."""
     hx, hy, hz = (0.5 * float(v) for v in size)

@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.worlds.town.line import SampledLine
-from services.simulator.worlds.town.profile import CORNER_RADIUS_M, KERB_M, SIDE_KERB_M
+from services.simulator.worlds.town.profile import (
+    CORNER_RADIUS_M,
+    KERB_M,
+    PAVEMENT_EDGE_M,
+    SIDE_KERB_M,
+    SIDE_PAVEMENT_EDGE_M,
+)
 
 Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
@@ -64,12 +70,19 @@ class DistanceMap:
 
     def outside_m(self, xy: Floats) -> Floats:
         """Signed distance to the kerb at world positions (..., 2), shape (...)."""
-        at = np.minimum(
-            np.maximum((xy - self.origin) / _CELL_M, 0.0), np.array(self._kerb_m.shape[::-1], np.float64) - 1.001
-        )
+        return self._at(self._kerb_m, xy)
+
+    def behind_pavement_m(self, xy: Floats) -> Floats:
+        """Signed distance to the back edge of the pavements at world positions (..., 2), shape (...)."""
+        loop_m = self._at(self.loop_m, xy) - (PAVEMENT_EDGE_M - KERB_M)
+        return np.asarray(np.minimum(loop_m, self._at(self.side_m, xy) - (SIDE_PAVEMENT_EDGE_M - SIDE_KERB_M)))
+
+    def _at(self, grid: Floats32, xy: Floats) -> Floats:
+        """Between the four nearest cells; beyond the edge the value there."""
+        at = np.minimum(np.maximum((xy - self.origin) / _CELL_M, 0.0), np.array(grid.shape[::-1], np.float64) - 1.001)
         cell = at.astype(np.intp)
         fx, fy = at[..., 0] - cell[..., 0], at[..., 1] - cell[..., 1]
         column, row = cell[..., 0], cell[..., 1]
-        low = self._kerb_m[row, column] * (1.0 - fx) + self._kerb_m[row, column + 1] * fx
-        high = self._kerb_m[row + 1, column] * (1.0 - fx) + self._kerb_m[row + 1, column + 1] * fx
+        low = grid[row, column] * (1.0 - fx) + grid[row, column + 1] * fx
+        high = grid[row + 1, column] * (1.0 - fx) + grid[row + 1, column + 1] * fx
         return np.asarray(low * (1.0 - fy) + high * fy)

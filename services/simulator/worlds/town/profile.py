@@ -10,6 +10,8 @@ LANE_CENTRES_M = (0.5 * LANE_WIDTH_M, 1.5 * LANE_WIDTH_M)
 BAY_CENTRE_M = 2.0 * LANE_WIDTH_M + 1.1
 KERB_M = 2.0 * LANE_WIDTH_M + 2.2
 PAVEMENT_EDGE_M = KERB_M + 3.5
+WALKWAY_M = (KERB_M + 1.1, KERB_M + 3.0)
+"""Part of the pavement where nothing stands."""
 KERB_HEIGHT_M = 0.12
 BAY_LENGTH_M = 6.0
 """Bay k of either side lies between s = k and k + 1 bay lengths; its marks are painted there."""
