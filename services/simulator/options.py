@@ -16,6 +16,7 @@ Light = Literal["noon", "low_sun", "overcast", "dusk"]
 
 MIN_DRIVE_M = 256.0
 
+_OWN_SPEED_M_S: dict[WorldName, float] = {"street": 8.0, "town": 8.0, "corridor": 1.2}
 _MAX_FRAMES = 20_000
 _MAX_DRIVE_M = 20_000.0
 _MAX_SIDE_PX = 4096
@@ -75,7 +76,8 @@ class DriveOptions:
     """Who is there and how they move: the same place with other traffic."""
     frames: int = 320
     rate_hz: float = 10.0
-    speed_m_s: float = 8.0
+    speed_m_s: float = 0.0
+    """The camera's speed; 0 asks for the world's own (8 m/s in streets, 1.2 m/s in the corridor) and reads as that."""
     lateral_offset_m: float = 0.0
     """The camera's way beside its usual one, left positive: a second drive that is not the first one again."""
     threads: int = 1
@@ -142,6 +144,8 @@ class DriveOptions:
         types = get_type_hints(type(self))
         for field in fields(self):
             self._expect_type(field.name, types[field.name])
+        if self.speed_m_s == 0.0:
+            object.__setattr__(self, "speed_m_s", _OWN_SPEED_M_S[self.world])
         for name, (low, high) in _RANGES.items():
             self._expect(name, low, high)
         self._expect("fx_px", 0.2 * self.width, 10.0 * self.width)

@@ -16,7 +16,7 @@ class SimulatorConfig(BaseModel):
     traffic_seed: int | None = Field(None, ge=0, description="the same place with other traffic")
     frames: int = Field(320, ge=1, description="frames in the drive")
     rate_hz: float = Field(10.0, gt=0, description="frames a second")
-    speed_m_s: float = Field(8.0, gt=0, description="the camera's speed in m/s")
+    speed_m_s: float = Field(0.0, ge=0, description="the camera's speed in m/s; 0: the world's own (8, corridor 1.2)")
     lateral_offset_m: float = Field(0.0, description="the camera's way beside its usual one in m, left positive")
     threads: int = Field(1, ge=0, description="threads that cast rays (0: all cores); the bytes do not depend on it")
 

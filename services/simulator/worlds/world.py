@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.actor import Actor
+from services.simulator.rendering.light import Light
 from services.simulator.rendering.textures import TextureAtlas
 from services.simulator.shapes.meshes import Mesh
 
@@ -28,6 +29,7 @@ class World:
 
     mesh: everything that can never move. actors: everybody who could, those who stand all the time included; their ids
     count from 1. atlas: the textures of both. sky_texture: the one that is seen where there is no surface.
+    light: the world's own, whatever light the options ask for; None under the open sky.
     """
 
     atlas: TextureAtlas
@@ -35,3 +37,4 @@ class World:
     actors: list[Actor]
     camera_path: CameraPath
     sky_texture: str = "clouds"
+    light: Light | None = None
