@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulator's street as a source, with all its truth."""
+"""The simulator as a source, with all its truth."""
 
 from typing import TYPE_CHECKING
 
@@ -11,18 +11,24 @@ from services.camera.sources.source import SourceFrame
 from services.simulator.options import DriveOptions
 
 if TYPE_CHECKING:
+    from services.simulator.camera.camera import Camera
     from services.simulator.drive import Drive
+
+_RIGHT = "camera_right"
 
 
 class Simulator:
-    """A drive through the street that `options` describe; image, depth, true pose and true instances.
+    """The drive that `options` describe: image (and the right one of a pair), depth, true pose and true instances.
+
+    Lens and pair: depth and truth belong to the left image as it is, distorted where the lens distorts; both cameras
+    have the same lens, and the right one's projection says how far it stands to the right (P[0, 3] = -fx * baseline).
 
     The world is built when the first frame is asked for: an input that is only looked at costs nothing.
     """
 
     def __init__(self, options: DriveOptions) -> None:
         self._options = options
-        self._street: Drive | None = None
+        self._drive: Drive | None = None
 
     @property
     def name(self) -> str:
@@ -43,19 +49,22 @@ class Simulator:
     def frame(self, index: int) -> SourceFrame | None:
         if index >= self._options.frames:
             return None
-        if self._street is None:
+        if self._drive is None:
             # The renderer costs seconds to load; whoever reads a folder does without.
             from services.simulator.drive import Drive
 
-            self._street = Drive(self._options)
-        seen = self._street.render(index)
+            self._drive = Drive(self._options)
+        seen = self._drive.render(index)
         time_ns = seen.timestamp_ns
-        camera = self._street.camera
+        camera, baseline_m = self._drive.camera, self._options.stereo_baseline_m
+        pair = seen.image_right is not None
         return SourceFrame(
             f"{index:06d}",
             time_ns,
             Image(time_ns, seen.image),
-            CameraCalibration(time_ns, camera.width, camera.height, camera.k),
+            _calibration(time_ns, camera, camera.projection() if pair else None, "camera"),
+            image_right=None if seen.image_right is None else Image(time_ns, seen.image_right, _RIGHT),
+            calibration_right=_calibration(time_ns, camera, camera.projection(baseline_m), _RIGHT) if pair else None,
             depth=DepthImage(time_ns, seen.depth_m),
             true_pose=TruePose(time_ns, seen.world_from_camera),
             true_instances=TrueInstances(
@@ -69,6 +78,8 @@ class Simulator:
                         _xyz(instance.velocity_m_s),
                         _xyz(instance.position_m),
                         instance.box_px,
+                        instance.heading_rad,
+                        instance.size_m,
                     )
                     for instance in seen.instances
                 ),
@@ -77,6 +88,21 @@ class Simulator:
 
     def close(self) -> None:
         """Nothing is held open."""
+
+
+def _calibration(
+    time_ns: int, camera: "Camera", projection: npt.NDArray[np.float64] | None, frame_id: str
+) -> CameraCalibration:
+    return CameraCalibration(
+        time_ns,
+        camera.width,
+        camera.height,
+        camera.k,
+        camera.lens.coefficients,
+        projection,
+        frame_id,
+        camera.lens.model,
+    )
 
 
 def _xyz(vector: npt.NDArray[np.float64]) -> tuple[float, float, float]:

@@ -55,9 +55,9 @@ LIGHTS: dict[LightName, Light] = {
     ),
     "low_sun": Light(
         to_sun=(0.80, 0.52, 0.24),
-        sun=(0.62, 0.82, 0.98),
-        sky=(0.44, 0.38, 0.34),
-        ground=(0.22, 0.24, 0.27),
+        sun=(0.66, 0.90, 1.10),
+        sky=(0.60, 0.52, 0.47),
+        ground=(0.30, 0.32, 0.35),
         haze=(176.0, 204.0, 226.0),
         haze_length_m=480.0,
         clouds=0.35,
@@ -79,8 +79,8 @@ LIGHTS: dict[LightName, Light] = {
     "dusk": Light(
         to_sun=(0.80, 0.52, -0.05),
         sun=(0.0, 0.0, 0.0),
-        sky=(0.40, 0.31, 0.28),
-        ground=(0.16, 0.15, 0.15),
+        sky=(0.46, 0.37, 0.34),
+        ground=(0.19, 0.18, 0.18),
         haze=(112.0, 92.0, 88.0),
         haze_length_m=420.0,
         clouds=0.12,

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The simulator's street as a source."""
+"""The simulator as a source."""
 
 import numpy as np
 import pytest
 
+from schemas.codec.camera import calibration_to_message, calibration_to_record
 from services.camera.sources.simulator import Simulator
 from services.simulator.options import DriveOptions
 
@@ -41,3 +42,46 @@ def test_the_drive_has_an_end_and_any_order_is_the_same(simulator: Simulator) ->
     assert other is not None
     np.testing.assert_array_equal(late.image.pixels, other.image.pixels)
     assert (late.name, early.name) == ("000199", "000000")
+
+
+def test_objects_have_their_cuboids(simulator: Simulator) -> None:
+    frame = simulator.frame(150)
+    assert frame is not None
+    assert frame.true_instances is not None
+    for found in frame.true_instances.objects:
+        assert found.size_m is not None
+        length, width, height = found.size_m
+        assert 0.3 < width < 3.0
+        assert 0.3 < length < 20.0
+        assert 1.0 < height < 5.0
+    assert len({found.heading_rad for found in frame.true_instances.objects}) > 1
+
+
+def test_a_pair_behind_a_lens_says_what_it_is() -> None:
+    options = DriveOptions(
+        width=160, height=96, lens="fisheye", distortion=(0.02, -0.01, 0.0, 0.0), stereo_baseline_m=0.5
+    )
+    frame = Simulator(options).frame(0)
+    assert frame is not None
+    assert frame.image_right is not None
+    assert frame.calibration_right is not None
+    assert frame.calibration_right.projection is not None
+    assert frame.calibration.projection is not None
+    assert frame.calibration.projection[0, 3] == 0.0
+    assert frame.calibration_right.projection[0, 3] == pytest.approx(-0.5 * frame.calibration.intrinsics[0, 0])
+    for calibration in (frame.calibration, frame.calibration_right):
+        assert calibration.distortion_model == "kannala_brandt"
+        assert calibration.distortion == (0.02, -0.01, 0.0, 0.0)
+    message = calibration_to_message(frame.calibration_right)
+    assert (message.distortion_model, list(message.D)) == ("kannala_brandt", [0.02, -0.01, 0.0, 0.0])
+    assert calibration_to_record(message).distortion_model == "kannala_brandt"
+    assert not np.array_equal(frame.image.pixels, frame.image_right.pixels)
+    assert (frame.image.frame_id, frame.image_right.frame_id) == ("camera", "camera_right")
+
+
+def test_one_camera_has_no_right_one(simulator: Simulator) -> None:
+    frame = simulator.frame(0)
+    assert frame is not None
+    assert frame.image_right is None
+    assert frame.calibration_right is None
+    assert frame.calibration.distortion == ()
