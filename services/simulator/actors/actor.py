@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.motion import Path, SpeedProfile
-from services.simulator.actors.placement import planar_pose
+from services.simulator.actors.placement import axle_pose, planar_pose
 from services.simulator.shapes.meshes import Mesh
 from services.simulator.shapes.people import Gait
 
@@ -18,14 +18,16 @@ Floats = NDArray[np.float64]
 MOVING_M_S = 0.1
 """An actor moves from this speed on."""
 _HALF_STEP_M = 0.15
+_TANGENT_M = 0.02
 
 
 @dataclass(frozen=True, slots=True)
 class ActorState:
     """An actor at one time, in the world frame.
 
-    world_from_object: 4x4, on the ground. centre_m: (3,), middle of the cuboid. velocity_m_s: (3,), along the ground;
-    climbing kerbs is not counted. walked_m: way gone. present: whether the world reaches to where it is.
+    world_from_object: 4x4, on the ground. centre_m: (3,), middle of the cuboid. velocity_m_s: (3,), of the object's
+    origin; who walks has none upwards, for climbing kerbs is not counted. heading_rad: of its x axis on the plane,
+    against world x. walked_m: way gone. present: whether the world reaches to where it is.
     """
 
     world_from_object: Floats
@@ -43,6 +45,8 @@ class Actor:
 
     mesh: in the object frame (x forward, y left, z up, origin on the ground). size_m: length, width, height.
     disc_radius_m, disc_offsets_m: the discs along x that stand for the actor when collisions are looked for.
+    half_base_m: half the distance of its axles, which both stand on the path, so that it pitches with the slope and
+    cuts corners as it would; 0: upright, its origin on the path.
     """
 
     instance_id: int
@@ -54,6 +58,7 @@ class Actor:
     gait: Gait | None
     disc_radius_m: float
     disc_offsets_m: tuple[float, ...]
+    half_base_m: float = 0.0
 
     @property
     def always_still(self) -> bool:
@@ -64,6 +69,8 @@ class Actor:
         """Where it is and how it moves at a time (moving: at 0.1 m/s or more)."""
         gone = float(self.speed.distance_m(t_s))
         speed = float(self.speed.speed_m_s(t_s))
+        if self.half_base_m > 0.0:
+            return self._on_axles(gone, speed)
         behind, position, ahead = self.path.point(gone + np.array([-_HALF_STEP_M, 0.0, _HALF_STEP_M]))
         step = ahead - behind
         step[2] = 0.0
@@ -72,6 +79,17 @@ class Actor:
         pose[2, 3] = position[2]
         centre = position + np.array([0.0, 0.0, 0.5 * self.size_m[2]])
         velocity = step * (speed / (2.0 * _HALF_STEP_M))
+        moving = float(np.linalg.norm(velocity)) >= MOVING_M_S
+        return ActorState(pose, centre, heading, velocity, moving, gone, bool(self.path.inside(gone)))
+
+    def _on_axles(self, gone: float, speed: float) -> ActorState:
+        base, near = self.half_base_m, _TANGENT_M
+        point = self.path.point(gone + np.array([-base - near, -base + near, base - near, base + near]))
+        rear, front = 0.5 * (point[0] + point[1]), 0.5 * (point[2] + point[3])
+        pose = axle_pose(rear, front)
+        velocity = (point[1] - point[0] + point[3] - point[2]) * (speed / (4.0 * near))
+        centre = pose[:3, 3] + 0.5 * self.size_m[2] * pose[:3, 2]
+        heading = float(np.arctan2(pose[1, 0], pose[0, 0]))
         moving = float(np.linalg.norm(velocity)) >= MOVING_M_S
         return ActorState(pose, centre, heading, velocity, moving, gone, bool(self.path.inside(gone)))
 

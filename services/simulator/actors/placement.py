@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where upright things stand."""
+"""Where things stand."""
 
 from __future__ import annotations
 
@@ -15,4 +15,15 @@ def planar_pose(xy: Floats, heading: float) -> Floats:
     matrix = np.eye(4)
     matrix[:2, :2] = [[cos, -sin], [sin, cos]]
     matrix[:2, 3] = xy
+    return matrix
+
+
+def axle_pose(rear: Floats, front: Floats) -> Floats:
+    """world_from_object, 4x4, of an object whose two axles stand on these points (3,), its origin midway; no roll."""
+    ahead = (front - rear) / np.linalg.norm(front - rear)
+    left = np.array([-ahead[1], ahead[0], 0.0]) / np.hypot(ahead[0], ahead[1])
+    up = np.array([-ahead[2] * left[1], ahead[2] * left[0], ahead[0] * left[1] - ahead[1] * left[0]])
+    matrix = np.eye(4)
+    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = ahead, left, up
+    matrix[:3, 3] = 0.5 * (rear + front)
     return matrix

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the loop's traffic has to let others cross: closed when somebody wants to, crossed only when it is empty."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.simulator.worlds.town.traffic.state import VehicleState
+from services.simulator.worlds.town.traffic.tracks import LOOP_TRACKS
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+STOP_AHEAD_M = 1.0
+"""Stop lines lie this far ahead of what is crossed."""
+_COMFORT_M_S2 = 2.5
+_MILD_M_S2 = 0.8
+_REACTION_S = 1.0
+_SIGHT_M = 110.0
+_CLEARING_S = 8.0
+"""A site whose cars do not get away within this is opened again."""
+
+
+class SiteState(Enum):
+    """open: traffic flows; closing: it stops, who is too near goes through; crossed: it stands, others cross."""
+
+    OPEN = "open"
+    CLOSING = "closing"
+    CROSSED = "crossed"
+
+
+class Site:
+    """A stretch of the loop, s from `low_m` to `high_m`, that others cross; both ways stop ahead of it."""
+
+    def __init__(self, low_m: float, high_m: float, vehicles: int) -> None:
+        self.middle_m = 0.5 * (low_m + high_m)
+        self._reach_m = 0.5 * (high_m - low_m) + STOP_AHEAD_M
+        self.state = SiteState.OPEN
+        self.since_s = -np.inf
+        self.busy_until_s = -np.inf
+        self._passes = np.zeros(vehicles, bool)
+        """Who was too near to stop and goes through."""
+
+    def change(self, state: SiteState, now_s: float) -> None:
+        """Go into another state."""
+        self.state, self.since_s = state, now_s
+
+    def ahead_m(self, state: VehicleState, rows: Ints) -> Floats:
+        """Road from the bumpers of vehicles on the loop to their stop line, up to a whole round."""
+        line = np.where(state.track[rows] < LOOP_TRACKS // 2, self.middle_m, -self.middle_m) - self._reach_m
+        front = state.x_m[rows] + 0.5 * state.length_m[rows]
+        return np.asarray((line - front) % state.tracks.length_m[0])
+
+    def inside(self, state: VehicleState, rows: Ints) -> NDArray[np.bool_]:
+        """Whether any part of a vehicle is between the stop lines."""
+        ahead, round_m = self.ahead_m(state, rows), state.tracks.length_m[0]
+        return np.asarray(round_m - ahead < 2.0 * self._reach_m + state.length_m[rows])
+
+    def gap_for_all(self, state: VehicleState, rows: Ints) -> bool:
+        """Whether nobody would have to brake for it."""
+        if self.inside(state, rows).any():
+            return False
+        speed = state.speed_m_s[rows]
+        needed = speed * speed / (2.0 * _MILD_M_S2) + _REACTION_S * speed
+        return bool((self.ahead_m(state, rows) > needed).all())
+
+    def close(self, state: VehicleState, rows: Ints, now_s: float) -> None:
+        """Stop the traffic, as far as it can."""
+        speed = state.speed_m_s[rows]
+        self._passes[:] = False
+        self._passes[rows] = self.ahead_m(state, rows) < speed * speed / (2.0 * _COMFORT_M_S2) + 0.3 * speed
+        self.change(SiteState.CLOSING, now_s)
+
+    def is_empty(self, state: VehicleState, rows: Ints) -> bool:
+        """Whether everybody who could not stop is through."""
+        coming = self._passes[rows] & (self.ahead_m(state, rows) < _SIGHT_M)
+        return not bool((self.inside(state, rows) | coming).any())
+
+    def gave_up(self, now_s: float) -> bool:
+        """Whether the traffic did not get away in time."""
+        return self.state is SiteState.CLOSING and now_s - self.since_s > _CLEARING_S
+
+    def hold(self, state: VehicleState, rows: Ints) -> None:
+        """Let those who can stop see the line."""
+        if self.state is SiteState.OPEN:
+            return
+        ahead = self.ahead_m(state, rows)
+        held = (ahead < _SIGHT_M) & ~self._passes[rows]
+        state.gate_m[rows[held]] = np.minimum(state.gate_m[rows[held]], ahead[held])
