@@ -17,7 +17,20 @@ ROOFS = ("roof_red", "roof_brown", "roof_grey")
 
 
 def paint_library(seed: int) -> dict[str, Image]:
-    """All textures, name to BGR uint8 image; each has a generator of its own, so that one more changes no other."""
+    """All textures of the street, name to BGR uint8 image; each has a generator of its own, so that one more changes no
+    other."""
+    fronts = {f"facade_{style.name}": style for style in facades.STYLES}
+    houses = {name: facades.paint_facade(_generator(seed, name), style) for name, style in fronts.items()}
+    return _paint_surfaces(seed) | houses | _paint_things(seed)
+
+
+def paint_shared(seed: int) -> dict[str, Image]:
+    """The street's textures without its houses, for a world that has others."""
+    return _paint_surfaces(seed) | _paint_things(seed)
+
+
+def _paint_surfaces(seed: int) -> dict[str, Image]:
+    """Grounds, plants, roofs, plain materials, road paint, sky."""
     painters: dict[str, Callable[[np.random.Generator], Image]] = {
         "asphalt": surfaces.asphalt,
         "paving": surfaces.paving,
@@ -39,10 +52,12 @@ def paint_library(seed: int) -> dict[str, Image]:
         "tree_line": surfaces.tree_line,
         "clouds": surfaces.clouds,
     }
-    textures = {name: paint(_generator(seed, name)) for name, paint in painters.items()}
-    for style in facades.STYLES:
-        name = f"facade_{style.name}"
-        textures[name] = facades.paint_facade(_generator(seed, name), style)
+    return {name: paint(_generator(seed, name)) for name, paint in painters.items()}
+
+
+def _paint_things(seed: int) -> dict[str, Image]:
+    """Vehicles, clothes and traffic signs."""
+    textures = {}
     for body in vehicles.STYLES:
         name = f"side_{body.name}"
         textures[name] = vehicle_textures.paint_side(_generator(seed, name), body)

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from services.simulator.painting import shopfronts, storeys, town_surfaces
-from services.simulator.painting.library import paint_library
+from services.simulator.painting.library import paint_shared
 from services.simulator.painting.surfaces import Image, asphalt, coloured, leaves, noise, roof_tiles, speckle, to_image
 
 SHOPS = 9
@@ -24,7 +24,7 @@ TOWN_ROOFS = ("roof_red", "roof_brown", "roof_grey", "roof_slate", "roof_moss")
 
 
 def paint_town_library(seed: int) -> dict[str, Image]:
-    """All textures of the town, name to BGR uint8 image; each has a generator of its own."""
+    """All textures of the town, those it shares with the street among them, name to BGR uint8 image."""
     painters: dict[str, Callable[[np.random.Generator], Image]] = {
         "asphalt_side": lambda rng: asphalt(rng, 512),
         "setts_grey": lambda rng: town_surfaces.setts(rng, (138.0, 142.0, 146.0)),
@@ -65,7 +65,7 @@ def paint_town_library(seed: int) -> dict[str, Image]:
     for k in range(ARROWS):
         painters[f"arrow_{k}"] = partial(town_surfaces.arrow, kind=k)
     own = {name: paint(np.random.default_rng([seed, 23, *name.encode()])) for name, paint in painters.items()}
-    return paint_library(seed) | own
+    return paint_shared(seed) | own
 
 
 def _sign(rng: np.random.Generator, kind: int) -> Image:
