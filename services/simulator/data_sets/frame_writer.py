@@ -71,7 +71,9 @@ class FrameWriter:
 
     def _images(self, frame: SimulatedFrame) -> list[WrittenFile]:
         files = []
-        for side, image in enumerate((frame.image,)):
+        for side, image in enumerate((frame.image, frame.image_right)):
+            if image is None:
+                continue
             files.append(self._png(self._paths.image(2 + side, frame.index), image[..., ::-1]))
             if "grey" in self._formats:
                 grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
@@ -96,7 +98,7 @@ class FrameWriter:
         return files
 
     def _objects(self, frame: SimulatedFrame) -> tuple[ObjectTruth, ...]:
-        boxes = self._labels.boxes(frame)
+        boxes = self._labels.boxes(frame) if "tracking" in self._formats else {}
         return tuple(
             ObjectTruth(
                 item.instance_id,

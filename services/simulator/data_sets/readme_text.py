@@ -15,6 +15,8 @@ Frames of reference
   sequence the left camera at the first frame: poses, trajectory.tum and surface are in it
   world    the simulator's: x forward and y left at the start, z up; dataset.json: world_from_first_camera
 
+What is true is true of a frame's time, also where its image is frozen, black or blurred by option.
+
 Folders and files, <seq> = {first}..{last}
 """
 

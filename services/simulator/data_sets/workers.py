@@ -107,8 +107,12 @@ def _received(here: Connection, process: BaseProcess) -> object:
         return here.recv()
     except (EOFError, ConnectionError):
         process.join(_EXIT_S)
-        message = f"a rendering process ended (exit code {process.exitcode}); was there memory for all of them?"
-        raise ResourceError(f"{message} Give the same command again, or fewer --jobs") from None
+        if process.exitcode is not None and process.exitcode >= 0:
+            raise ResourceError(f"a rendering process failed (exit code {process.exitcode}), as said above") from None
+        raise ResourceError(
+            f"a rendering process was killed (signal {-(process.exitcode or 0)}), perhaps for want of memory; "
+            "the same command goes on, with fewer --jobs if need be"
+        ) from None
 
 
 def _work(there: Connection, root: Path, request: DataSetRequest) -> None:

@@ -5,6 +5,7 @@ import contextlib
 import hashlib
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -26,6 +27,7 @@ from services.formats.point_cloud import read_points
 from services.formats.rle import decode_mask
 from services.formats.tum import read_tum
 from services.simulator.data_sets.frame_writer import MOVING, NOBODY, NON_MOVING
+from services.simulator.data_sets.request import parse_formats
 from services.simulator.data_sets.surface import FARTHEST_M
 from services.simulator.drive import Drive
 from services.simulator.frame import SimulatedFrame
@@ -254,3 +256,20 @@ def test_the_folder_says_what_it_is_and_can_be_checked(root: Path) -> None:
     assert manifest["files"]["count"] == len(listed)
     assert manifest["files"]["sha256"] == hashlib.sha256(sums.encode()).hexdigest()
     assert manifest["options"]["seeds"] == [3]
+
+
+def test_a_stereo_data_set_is_read_as_a_rectified_pair(tmp_path: Path) -> None:
+    stereo = replace(TINY, frames=1, stereo_baseline_m=0.54)
+    make(tmp_path, tiny_request(drive=stereo, formats=parse_formats(["grey"])))
+    drive = Drive(stereo)
+    truth = drive.render(0)
+    for left in ("image_2", "image_0"):
+        read = KittiOdometry(tmp_path / "sequences" / "00", left=left).frame(0)
+        assert read is not None
+        assert read.image_right is not None
+        assert read.calibration_right is not None
+        assert read.calibration_right.projection is not None
+        assert read.calibration_right.projection[0, 3] == pytest.approx(-drive.camera.fx_px * 0.54)
+        right = truth.image_right if left == "image_2" else cv2.cvtColor(truth.image_right, cv2.COLOR_BGR2GRAY)
+        assert np.array_equal(read.image_right.pixels, right)
+        assert not np.array_equal(read.image_right.pixels, read.image.pixels)

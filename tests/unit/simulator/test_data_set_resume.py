@@ -158,7 +158,7 @@ def test_a_file_that_is_there_outlives_a_failed_one(tmp_path: Path) -> None:
 def test_a_killed_process_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # As one that the kernel takes for want of memory: without a word on its pipe.
     monkeypatch.setenv("PYTHONPATH", str(_module_that_kills(tmp_path)))
-    with pytest.raises(ResourceError, match=r"a rendering process ended \(exit code -9\).*fewer --jobs"):
+    with pytest.raises(ResourceError, match=r"a rendering process was killed \(signal 9\).*fewer --jobs"):
         make(tmp_path / "set", tiny_request(), jobs=2)
 
 
