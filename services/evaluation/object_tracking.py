@@ -145,8 +145,9 @@ def _trackeval_metrics() -> Any:
         with _quiet():
             from trackeval import metrics
     except ImportError as error:
+        # without its dependencies, all of which are here but for a second OpenCV that needs a display's libraries
         raise ResourceError(
-            f"trackeval is not installed ({error}), expected it for object tracking: pip install trackeval"
+            f"trackeval is not installed ({error}), expected it for object tracking: pip install --no-deps trackeval"
         ) from None
     return metrics
 

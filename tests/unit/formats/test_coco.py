@@ -48,6 +48,7 @@ def test_annotations_come_back(dataset: CocoDataset, tmp_path: Path) -> None:
     assert dataset.annotations[0].box_px == (3.0, 2.0, 6.0, 8.0)
 
 
+@pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")  # pycocotools' own, with numpy 2
 def test_pycocotools_reads_what_is_written(dataset: CocoDataset, tmp_path: Path) -> None:
     write_coco(tmp_path / "a.json", dataset)
     write_coco_results(tmp_path / "r.json", [CocoResult(1, 3, encode_mask(_mask(2, 3)), 0.5)])
