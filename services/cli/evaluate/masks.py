@@ -21,7 +21,8 @@ def masks(
         list[str] | None, typer.Option(help="Only this category; may be given again (default: those of the truth).")
     ] = None,
     min_height: Annotated[
-        float, typer.Option(min=0.0, help="Height, px, of the instances that precision and recall are about.")
+        float,
+        typer.Option(min=0.0, max=65535.0, help="Height, px, of the instances that precision and recall are about."),
     ] = 40.0,
     min_score: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Score from which precision and recall count an instance.")

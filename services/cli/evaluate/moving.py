@@ -22,7 +22,7 @@ def moving(
     *,
     truth: Annotated[Path, typer.Option(help="Folder of true masks, in any of the three kinds.")],
     min_height: Annotated[
-        float, typer.Option(min=0.0, help="Height, px, of the instances whose moving flag counts.")
+        float, typer.Option(min=0.0, max=65535.0, help="Height, px, of the instances whose moving flag counts.")
     ] = 40.0,
     json_file: JsonFlag = None,
     plots: PlotsFlag = None,
