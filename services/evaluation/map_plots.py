@@ -36,7 +36,8 @@ def plot_map_error(
     shown = axes.scatter(x, y, 4, distance, cmap="viridis_r", vmin=0.0, vmax=farthest, linewidths=0, label="landmarks")
     figure.colorbar(shown, ax=axes, extend="max", label="distance to the surface [m]", shrink=0.7)
     _limit_to(axes, np.concatenate((under, places)))
-    axes.set_title(
+    # Over the whole figure: the street may be narrow.
+    figure.suptitle(
         f"map against surface: median {error.accuracy.median_m:.3f} m, mean {error.accuracy.mean_m:.3f} m"
         f" ({error.accuracy.points} of {error.landmarks} landmarks)"
     )

@@ -37,8 +37,8 @@ def _relative(error: RelativeError) -> dict[str, str]:
     measures = {}
     for kind, statistics in (("m", error.translation_m), ("deg", error.rotation_deg)):
         for name in ("rmse", "mean", "median"):
-            value = NOTHING if statistics is None else f"{asdict(statistics)[name]:.3f} ({error.coverage:.1%})"
-            measures[f"RPE {error.delta:g} {unit} {_statistic(name)} [{kind}]"] = value
+            value = NOTHING if statistics is None else f"{asdict(statistics)[name]:.3f}"
+            measures[f"RPE {error.delta:g} {unit} {_statistic(name)} [{kind}]"] = f"{value} ({error.coverage:.1%})"
     return measures
 
 

@@ -34,7 +34,8 @@ def trajectory(
         int | None, typer.Option(min=1, help="Frames in the input, for the coverage (default: the true poses).")
     ] = None,
     rate: Annotated[
-        float | None, typer.Option(help="Frames a second, where the truth is denser than the frames (TUM, EuRoC).")
+        float | None,
+        typer.Option(help="Frames a second: where the truth is denser than the frames, or KITTI poses have no times."),
     ] = None,
     delta: Annotated[int, typer.Option(min=1, help="Frames that the relative error spans.")] = 1,
     delta_m: Annotated[float, typer.Option(help="Metres that the relative error by path spans.")] = 10.0,
@@ -57,10 +58,10 @@ def trajectory(
     body_from_sensor = None if sensor is None else read_body_from_sensor(sensor)
     files = estimate_files(estimates)
     truth_file = recorded_truth(estimates) if truth is None else truth
-    true = read_trajectory(truth_file, times=times, body_from_sensor=body_from_sensor)
+    true = read_trajectory(truth_file, times, rate, body_from_sensor)
     evaluated = []
     for name, file in files.items():
-        estimated = read_trajectory(file, times=times)
+        estimated = read_trajectory(file, times, rate)
         error = trajectory_error(
             estimated,
             true,

@@ -29,15 +29,34 @@ def test_a_mirrored_target_is_met_by_a_rotation_and_not_by_a_reflection() -> Non
     assert np.linalg.det(found.rotation) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_flat_drive_is_not_turned_over(seed: int) -> None:
+    # The third singular value is 0, and its vectors have either sign: without the guard half of these are mirrored.
+    rng = np.random.default_rng(seed)
+    source = rng.normal(size=(12, 3)) * (1.0, 1.0, 0.0)
+    rotation = Rotation.random(rng=rng).as_matrix()
+    found = align(source, 3.0 * source @ rotation.T, Alignment.SIM3)
+    np.testing.assert_allclose(found.rotation, rotation, atol=1e-9)
+    assert found.scale == pytest.approx(3.0)
+
+
+def test_a_target_at_one_place_gives_no_scale() -> None:
+    source = np.random.default_rng(2).normal(size=(30, 3))
+    with pytest.raises(InputError, match="all 30 true positions are at one place: they give no scale"):
+        align(source, np.full((30, 3), 7.0), Alignment.SIM3)
+
+
 def test_se3_keeps_the_scale() -> None:
     source = np.random.default_rng(2).normal(size=(30, 3))
     assert align(source, 3.0 * source, Alignment.SE3).scale == 1.0
 
 
-def test_no_other_similarity_is_nearer() -> None:
+@pytest.mark.parametrize("mirror", [(1.0, 1.0, 1.0), (1.0, 1.0, -1.0)])
+def test_no_other_similarity_is_nearer(mirror: tuple[float, float, float]) -> None:
     rng = np.random.default_rng(4)
     source = rng.normal(size=(40, 3))
-    target = 2.0 * source @ Rotation.random(rng=rng).as_matrix().T + rng.normal(scale=0.3, size=(40, 3))
+    turned = (source * mirror) @ Rotation.random(rng=rng).as_matrix().T
+    target = 2.0 * turned + rng.normal(scale=0.3, size=(40, 3))
     found = align(source, target, Alignment.SIM3)
     least = np.square(found.points(source) - target).sum()
     for _ in range(200):
