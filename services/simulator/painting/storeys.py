@@ -90,7 +90,7 @@ def paint_wall(rng: np.random.Generator, style: StoreyStyle, height: int, width:
     """A wall without openings, as float canvas."""
     metres = height / _PX_PER_M
     if style.wall == "bricks":
-        return bricks(rng, style.colour, height, width, rows=round(metres / 0.15))
+        return bricks(rng, style.colour, height, width, rows=round(metres / 0.1))
     if style.wall == "planks":
         return planks(rng, style.colour, height, width, rows=round(metres / 0.2))
     if style.wall == "stone":

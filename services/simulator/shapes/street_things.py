@@ -170,7 +170,7 @@ def hydrant(texture: Textures) -> Mesh:
 
 def cabinet(texture: Textures) -> Mesh:
     """A grey cabinet of the telephone company."""
-    return box((1.1, 0.4, 1.5), (0, 0, 0.6), texture["timetable"], 1.2, (0.62, 0.62, 0.6))
+    return box((1.1, 0.4, 1.5), (0, 0, 0.6), texture["cladding_grey"], 1.2, (0.8, 0.84, 0.8))
 
 
 def letter_box(texture: Textures) -> Mesh:

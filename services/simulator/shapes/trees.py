@@ -24,11 +24,12 @@ def _crown(
     """Dented clumps round a middle at `centre_m`; spread_m: sideways and upwards."""
     pieces = []
     for k in range(clumps):
-        angle, out = 2.399963 * k, spread_m[0] * np.sqrt((k + 0.5) / clumps)
-        up = spread_m[1] * float(rng.uniform(-1.0, 1.0)) * (1.0 - 0.5 * out / spread_m[0])
-        centre = (out * np.cos(angle), out * np.sin(angle), centre_m + up)
-        size = 0.48 * spread_m[0] * rng.uniform(0.8, 1.25, 3) * [1.0, 1.0, 0.85]
-        pieces.append(blob(centre, size.tolist(), leaves, rng, sides=8, repeat=(3.0, 1.5), tint=_grey(rng)))
+        # Evenly over an ellipsoid by the golden angle, a little inside its surface.
+        polar, around = np.arccos(1.0 - 2.0 * (k + 0.5) / clumps), 2.399963 * k + float(rng.uniform(-0.3, 0.3))
+        out, up = float(rng.uniform(0.5, 0.75)) * np.sin(polar) * spread_m[0], 0.62 * np.cos(polar) * spread_m[1]
+        centre = (out * np.cos(around), out * np.sin(around), centre_m + up)
+        size = rng.uniform(0.8, 1.2, 3) * [0.52 * spread_m[0], 0.52 * spread_m[0], 0.46 * spread_m[1]]
+        pieces.append(blob(centre, size.tolist(), leaves, rng, sides=7, repeat=(3.0, 1.5), tint=_grey(rng)))
     return pieces
 
 
@@ -39,15 +40,15 @@ def _trunk(top_m: float, radius_m: float, bark: int) -> Mesh:
 def broad_tree(rng: np.random.Generator, leaves: str, texture: Textures) -> Mesh:
     """Round crown on a strong trunk, 7 to 10 m: lime, maple."""
     height = float(rng.uniform(7.0, 10.0))
-    spread = (0.27 * height, 0.22 * height)
-    crown = _crown(rng, 0.66 * height, spread, 11, texture[leaves])
+    spread = (0.29 * height, 0.3 * height)
+    crown = _crown(rng, 0.66 * height, spread, 13, texture[leaves])
     return merged([_trunk(0.62 * height, 0.2, texture["bark"]), *crown])
 
 
 def birch_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
     """Slender with a white trunk and small light clumps."""
     height = float(rng.uniform(8.0, 11.0))
-    crown = _crown(rng, 0.62 * height, (0.16 * height, 0.3 * height), 10, texture["leaves_birch"])
+    crown = _crown(rng, 0.62 * height, (0.16 * height, 0.36 * height), 11, texture["leaves_birch"])
     return merged([_trunk(0.85 * height, 0.13, texture["birch_bark"]), *crown])
 
 
@@ -87,7 +88,7 @@ def young_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
         tube((dx, 0, _ROOT_M), (dx, 0, 1.7), (0.05, 0.05), texture["boards"], 5, repeat=(1.0, 3.0))
         for dx in (-0.35, 0.35)
     ]
-    crown = _crown(rng, 0.72 * height, (0.9, 0.9), 5, texture["leaves_light"])
+    crown = _crown(rng, 0.72 * height, (0.95, 1.1), 6, texture["leaves_light"])
     return merged([_trunk(0.7 * height, 0.06, texture["bark"]), *stakes, *crown])
 
 

@@ -30,6 +30,7 @@ MIXES = {
 }
 _PANELS = tuple(style.name for style in STYLES if style.wall == "panels")
 _OTHERS = tuple(style.name for style in STYLES if style.wall != "panels")
+_LOW = tuple(style.name for style in STYLES if style.wall in ("timber", "planks"))
 _TREES = ("lime", "maple", "beech", "oak", "birch", "poplar", "fir", "young")
 _FENCES = ("hedge", "wall", "boards", "pickets", "rails")
 
@@ -38,7 +39,7 @@ _FENCES = ("hedge", "wall", "boards", "pickets", "rails")
 class Character:
     """How one side of a street looks.
 
-    mix: key of `MIXES`. styles: walls, the first ones most often; panels: those of blocks of flats. tree_m, lamp_m:
+    mix: key of `MIXES`. styles: walls, the first ones most often; panels: those of blocks of flats, often. tree_m, lamp_m:
     spacing along the street. poles: wires on wooden poles instead of lamps.
     """
 
@@ -54,9 +55,10 @@ class Character:
     paving: str
     poles: bool
 
-    def style(self, rng: np.random.Generator) -> str:
-        """A wall for the next house."""
-        return self.styles[int(rng.choice(len(self.styles), p=(0.5, 0.3, 0.2)))]
+    def style(self, rng: np.random.Generator, storeys: int) -> str:
+        """A wall for the next house; nobody builds high of wood."""
+        style = self.styles[int(rng.choice(len(self.styles), p=(0.5, 0.3, 0.2)))]
+        return self.panels if style in _LOW and storeys > 3 else style
 
 
 def draw_characters(rng: np.random.Generator, streets: int) -> list[tuple[Character, Character]]:

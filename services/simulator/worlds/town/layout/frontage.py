@@ -105,7 +105,7 @@ class HouseRow:
         tone = rng.uniform(0.9, 1.06, 3) * rng.uniform(0.82, 1.0)
         tint: Tint = (float(tone[0]), float(tone[1]), float(tone[2]))
         joined = MIXES[character.mix].gap_m[1] == 0.0
-        style = character.panels if lot.kind == "flats" and rng.random() < 0.6 else character.style(rng)
+        style = character.panels if lot.kind == "flats" and rng.random() < 0.6 else character.style(rng, lot.storeys)
         shop = None
         if lot.kind == "shop":
             shop = int(self._shops.pop() if self._shops else rng.integers(0, SHOPS))

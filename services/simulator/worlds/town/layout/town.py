@@ -94,7 +94,7 @@ def _both_sides(fronts: list[Frontage], survey: TownSurvey, s: float) -> list[Fr
 
 def _church(fronts: list[Frontage], site: Site, rng: np.random.Generator, texture: Mapping[str, int]) -> list[Mesh]:
     """One church, wherever along the loop it finds room; its spire is seen from far."""
-    style = str(rng.choice(["sandstone", "red_brick", "white_plaster", "dark_clinker"]))
+    style = str(rng.choice(["sandstone", "yellow_brick"]))
     roof = str(rng.choice(["roof_slate", "roof_red", "roof_moss"]))
     for number in rng.permutation(len(fronts)):
         front = fronts[int(number)]
