@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 
 from schemas.records import MotionState
 from services.evaluation.figure import finish_top_view, new_figure, save_figure
@@ -23,23 +22,26 @@ def plot_map_error(
     landmarks: LabelledPoints, surface: LabelledPoints, error: MapError, plane: GroundPlane, path: Path
 ) -> None:
     """Top view of the landmarks that were compared, in the colour of their distance, over the surface in grey."""
-    figure = new_figure()
-    axes = figure.add_subplot()
     standing = surface.chosen(surface.state != MotionState.MOVING)
     under = plane.project(standing.position[:: max(1, len(standing) // _DRAWN_SURFACE_POINTS)])
-    axes.scatter(under[:, 0], under[:, 1], s=1, color="#cccccc", linewidths=0, label="surface", rasterized=True)
     compared = np.isfinite(error.landmark_distance_m)
     distance = error.landmark_distance_m[compared]
-    places = plane.project(landmarks.position[compared])
+    x, y = plane.project(landmarks.position[compared]).T
+    low, high = _limits(np.concatenate((under, np.stack((x, y), axis=1))))
+    width_in, height_in = _size(high - low)
+    figure = new_figure(height_in=height_in, width_in=width_in)
+    axes = figure.add_subplot()
+    axes.scatter(under[:, 0], under[:, 1], s=1, color="#cccccc", linewidths=0, label="surface", rasterized=True)
     farthest = max(float(np.percentile(distance, _WORST_SHOWN)), 1e-6)
-    x, y = places.T
     shown = axes.scatter(x, y, 4, distance, cmap="viridis_r", vmin=0.0, vmax=farthest, linewidths=0, label="landmarks")
-    figure.colorbar(shown, ax=axes, extend="max", label="distance to the surface [m]", shrink=0.7)
-    _limit_to(axes, np.concatenate((under, places)))
+    figure.colorbar(shown, ax=axes, extend="max", label="distance to the surface [m]", shrink=0.8)
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
     # Over the whole figure: the street may be narrow.
     figure.suptitle(
-        f"map against surface: median {error.accuracy.median_m:.3f} m, mean {error.accuracy.mean_m:.3f} m"
-        f" ({error.accuracy.points} of {error.landmarks} landmarks)"
+        f"map against surface: median {error.accuracy.median_m:.3f} m, mean {error.accuracy.mean_m:.3f} m\n"
+        f"{error.accuracy.points} of {error.landmarks} landmarks",
+        fontsize=10,
     )
     finish_top_view(axes, plane, "m", marker_scale=4.0)
     save_figure(figure, path)
@@ -66,8 +68,13 @@ def plot_label_confusion(error: MapError, path: Path) -> None:
     save_figure(figure, path)
 
 
-def _limit_to(axes: Axes, places: npt.NDArray[np.float64]) -> None:
+def _limits(places: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     low, high = np.percentile(places, (_OUTLIERS, 100 - _OUTLIERS), axis=0)
-    margin = 0.05 * float((high - low).max())
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(low[1] - margin, high[1] + margin)
+    margin = max(0.05 * float((high - low).max()), 1e-3)
+    return low - margin, high + margin
+
+
+def _size(extent: npt.NDArray[np.float64]) -> tuple[float, float]:
+    """Width and height in inches of a figure that such a view fills, the colour bar beside it."""
+    scale = min(8.0 / float(extent[0]), 7.0 / float(extent[1]))
+    return max(scale * float(extent[0]) + 1.8, 5.0), max(scale * float(extent[1]) + 1.2, 3.0)

@@ -75,18 +75,17 @@ def test_a_path_alone_means_what_it_is(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_errors_stand_beside_their_coverage_in_table_json_and_pictures(kinemap: Kinemap) -> None:
     truth = _parabola("truth.tum")
-    for arguments in ((), ("trajectory",)):
-        ended = kinemap(
-            *arguments, _parabola("a.tum", skip=2), truth, "--truth", truth, "--json", "out/a.json", "--plots", "plots"
-        )
-        assert ended.code == 0, ended
-        assert re.search(r"ATE RMSE \[m\] +0\.000 \(80\.0%\) +0\.000 \(100\.0%\)", ended.out)
-        first, second = json.loads(Path("out/a.json").read_text())["estimates"]
-        assert (first["name"], first["file"], first["coverage"]) == ("a", "a.tum", pytest.approx(0.8))
-        assert first["ate_m"]["rmse"] == pytest.approx(0.0, abs=1e-6)
-        assert (second["name"], second["coverage"]) == ("truth", 1.0)
-        for name in ("trajectory", "xyz", "error_violin", "error_over_time"):
-            assert Path(f"plots/{name}.png").read_bytes().startswith(b"\x89PNG")
+    files = (_parabola("a.tum", skip=2), truth, "--truth", truth)
+    ended = kinemap("trajectory", *files, "--json", "out/a.json", "--plots", "plots")
+    assert ended.code == 0, ended
+    assert re.search(r"ATE RMSE \[m\] +0\.000 \(80\.0%\) +0\.000 \(100\.0%\)", ended.out)
+    first, second = json.loads(Path("out/a.json").read_text())["estimates"]
+    assert (first["name"], first["file"], first["coverage"]) == ("a", "a.tum", pytest.approx(0.8))
+    assert first["ate_m"]["rmse"] == pytest.approx(0.0, abs=1e-6)
+    assert (second["name"], second["coverage"]) == ("truth", 1.0)
+    for name in ("trajectory", "xyz", "error_violin", "error_over_time"):
+        assert Path(f"plots/{name}.png").read_bytes().startswith(b"\x89PNG")
+    assert kinemap(*files).out == ended.out
 
 
 def test_folders_of_runs_bring_their_truth_and_share_it(kinemap: Kinemap) -> None:
