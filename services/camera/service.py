@@ -4,8 +4,6 @@
 import time
 from functools import partial
 
-import cv2
-
 from schemas import topics
 from schemas.codec import encode
 from schemas.records import EndOfInput
@@ -17,6 +15,7 @@ from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
 from services.camera.sources.live_address import is_live
+from services.camera.sources.opencv_log import silence_opencv
 from services.camera.sources.source import Source, SourceFrame
 from services.runtime.bus import Bus
 from services.runtime.config import Config
@@ -130,8 +129,7 @@ class CameraService:
 
 def serve(config: Config) -> None:
     """Publish the frames of an input: a dataset's folder, a video, a recorded session or the simulator."""
-    # What a broken image is like is said once, in our own line.
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    silence_opencv()
     source = open_configured_source(config)
     try:
         with ZenohBus(config.bus, lossless=config.delivery.mode == "lossless") as bus:

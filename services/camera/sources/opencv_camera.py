@@ -11,6 +11,7 @@ from schemas.records import CameraCalibration
 from services.camera.sources.calibration_file import find_calibration, read_calibration
 from services.camera.sources.live_address import device_number, without_credentials
 from services.camera.sources.live_camera import STREAM_TIMEOUT_MS, Capture, LiveCamera
+from services.camera.sources.opencv_log import silence_opencv
 
 ASSUMED_FIELD_OF_VIEW_DEG = 60.0
 """horizontally, of a camera whose calibration nobody gave"""
@@ -42,6 +43,7 @@ def assumed_calibration(size: tuple[int, int]) -> CameraCalibration:
 
 
 def _open_capture(given: str) -> Capture | None:
+    silence_opencv()
     number = device_number(given)
     if number is not None:
         capture = cv2.VideoCapture(number, cv2.CAP_V4L2)

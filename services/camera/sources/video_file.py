@@ -8,6 +8,7 @@ import numpy as np
 
 from schemas.records import Image
 from services.camera.sources.calibration_file import find_calibration, read_calibration
+from services.camera.sources.opencv_log import silence_opencv
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 
@@ -31,6 +32,7 @@ class VideoFile:
         if not path.is_file():
             raise InputError(f"video {path}: no such file")
         self._path = path
+        silence_opencv()
         self._rewind()
         self._frame_count = int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
         rate_hz = self._capture.get(cv2.CAP_PROP_FPS)

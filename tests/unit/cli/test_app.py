@@ -2,6 +2,7 @@
 """The command line when something is wrong: one line on standard error, an exit code, nothing lost."""
 
 import socket
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -141,6 +142,16 @@ def test_a_live_camera_is_realtime_unless_it_is_asked_for_otherwise(tmp_path: Pa
     assert (resolved.delivery.mode, resolved.camera.input) == ("realtime", "rtsp://camera/1")
     folder = resolve_run(None, None, {"camera": {"input": str(tmp_path)}}, tmp_path / "folder")
     assert folder.delivery.mode == "lossless"
+
+
+@pytest.mark.parametrize("address", ["http://127.0.0.1:9/nothing", "/dev/video97"])
+def test_a_camera_that_cannot_be_reached_is_one_line_of_ours(address: str) -> None:
+    # A process of its own: FFmpeg and V4L2 write past Python's standard error.
+    command = [sys.executable, "-m", "services.cli.app", "run", address]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith(f"kinemap: error: camera {address}: gives no frame")
+    assert ended.stderr.count("\n") == 1
 
 
 def test_run_names_every_kind_of_input(kinemap: Kinemap) -> None:
