@@ -19,6 +19,9 @@ Floats32 = NDArray[np.float32]
 _FOOTPRINT = 0.85
 """Share of a pixel's extent that a texture is filtered over; the rest is left to the lens."""
 
+_WITHOUT_SHADOWS = 18
+"""Columns of a view's triangles that are needed where all of the sun's light arrives."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pixels:
@@ -56,7 +59,7 @@ class Shader:
     def shade(self, view: ViewTriangles, pixels: Pixels) -> Floats32:
         """Colours BGR 0 to 255, (N, M, 3)."""
         x, y, triangle = pixels.x, pixels.y, pixels.triangle
-        column = np.take(view.columns, triangle, axis=1)
+        column = np.take(view.columns if pixels.lit is not None else view.columns[:_WITHOUT_SHADOWS], triangle, axis=1)
         sky = triangle == view.columns.shape[1] - 1
         t = np.where(sky, np.float32(1.0), pixels.depth_m)
         ju = column[0] * x + column[1] * y + column[2]

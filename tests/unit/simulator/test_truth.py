@@ -1,60 +1,74 @@
 # SPDX-License-Identifier: Apache-2.0
 """Depth, poses and flow agree with the images and with each other."""
 
+from typing import Any
+
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from services.simulator.drive import Drive
+from services.simulator.options import DriveOptions
+from tests.benchmark.simulator.warp_errors import grey, pixel_grid, place_elsewhere, stereo_error, warp_errors
 
 STRONG_GRADIENT = 10.0
-
-
-def grey(image: NDArray[np.uint8]) -> NDArray[np.float32]:
-    return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY).astype(np.float32)
 
 
 def gradient(image: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.hypot(cv2.Sobel(image, cv2.CV_32F, 1, 0), cv2.Sobel(image, cv2.CV_32F, 0, 1)) / 8.0
 
 
-def pixel_grid(shape: tuple[int, ...]) -> NDArray[np.float32]:
-    rows, columns = np.mgrid[0 : shape[0], 0 : shape[1]].astype(np.float32)
-    return np.stack([columns, rows], axis=-1)
-
-
-def place_by_depth_and_pose(street: Drive, index: int) -> NDArray[np.float64]:
-    """Where each pixel's static point appears in the next frame, by a projection of the test's own."""
-    frame = street.render(index)
-    k = street.camera.k
-    pixel = np.concatenate([pixel_grid(frame.labels.shape), np.ones((*frame.labels.shape, 1))], axis=-1)
-    point = (pixel @ np.linalg.inv(k).T) * frame.depth_m[..., None]
-    next_from_now = np.linalg.inv(street.world_from_camera(index + 1)) @ frame.world_from_camera
-    image = (point @ next_from_now[:3, :3].T + next_from_now[:3, 3]) @ k.T
-    return image[..., :2] / np.maximum(image[..., 2:], 1e-9)
+BARREL = {"lens": "radial", "distortion": (-0.25, 0.06, 0.001, -0.001, 0.0)}
+FISHEYE = {"lens": "fisheye", "distortion": (0.02, -0.01, 0.003, -0.0005), "fx_px": 240.0}
 
 
 @pytest.mark.parametrize("index", [3, 128, 205, 300])
-def test_flow_and_depth_with_pose_carry_one_image_into_the_next(street: Drive, index: int) -> None:
-    now, then = street.render(index), street.render(index + 1)
-    flow = street.flow(index)
+def test_flow_and_depth_with_pose_say_the_same_of_what_stands(street: Drive, index: int) -> None:
+    now, flow = street.render(index), street.flow(index)
     static = (now.labels == 0) & (now.depth_m > 0.0)
+    next_from_now = np.linalg.inv(street.world_from_camera(index + 1)) @ now.world_from_camera
     by_flow = pixel_grid(now.labels.shape) + flow.flow_px
-    by_pose = place_by_depth_and_pose(street, index)
+    by_pose, _ = place_elsewhere(street, now, next_from_now)
     # Straight ahead nothing moves, beside the car it does: a flow of zeros would fail here.
     assert np.percentile(np.linalg.norm(flow.flow_px[static], axis=-1), 90) > 5.0
     assert np.abs(by_flow - by_pose)[static & flow.visible].max() < 1e-3
 
-    image = grey(now.image)
-    compared = static & flow.visible & (gradient(image) > STRONG_GRADIENT)
-    assert compared.mean() > 0.05
-    for place in (by_flow, by_pose):
-        at = place.astype(np.float32)
-        warped = grey(cv2.remap(then.image, at[..., 0], at[..., 1], cv2.INTER_LINEAR))
-        assert np.median(np.abs(warped - image)[compared]) <= 3.0
-    unmoved = np.abs(grey(then.image) - image)[compared]
-    assert np.median(unmoved) > 8.0
+
+@pytest.mark.parametrize(
+    ("seed", "options"),
+    [
+        (1, {}),
+        (2, {"stereo_baseline_m": 0.5}),
+        (3, BARREL),
+        (1, {"world": "town"}),
+        (2, {"world": "town", "light": "low_sun", "shadows": True}),
+        (3, {"world": "town", "stereo_baseline_m": 0.5, **FISHEYE}),
+    ],
+    ids=str,
+)
+def test_one_image_is_warped_into_another(seed: int, options: dict[str, Any]) -> None:
+    drive = Drive(DriveOptions(seed=seed, **options))
+    indices = (30, 128, 205)
+    found = [warp_errors(drive, index) for index in indices]
+    assert all(errors.share > 0.05 for errors in found)
+    assert np.median([errors.by_flow for errors in found]) <= 3.0
+    assert np.median([errors.by_depth_and_pose for errors in found]) <= 3.0
+    assert np.median([errors.unmoved for errors in found]) > 8.0
+    if drive.options.stereo_baseline_m:
+        assert np.median([stereo_error(drive, index) for index in indices]) <= 3.0
+
+
+@pytest.mark.parametrize("options", [BARREL, FISHEYE], ids=str)
+def test_flow_through_a_lens_is_that_of_depth_and_pose(options: dict[str, Any]) -> None:
+    drive = Drive(DriveOptions(width=320, height=96, **{**options, "fx_px": 150.0}))
+    now, flow = drive.render(100), drive.flow(100)
+    static = (now.labels == 0) & (now.depth_m > 0.0)
+    next_from_now = np.linalg.inv(drive.world_from_camera(101)) @ now.world_from_camera
+    by_pose, _ = place_elsewhere(drive, now, next_from_now)
+    by_flow = pixel_grid(now.labels.shape) + flow.flow_px
+    assert (static & flow.visible).mean() > 0.3
+    assert np.abs(by_flow - by_pose)[static & flow.visible].max() < 2e-3
 
 
 def test_flow_carries_moving_cars_and_people(street: Drive) -> None:
