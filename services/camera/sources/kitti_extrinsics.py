@@ -24,24 +24,21 @@ class KittiValues:
 
     def transform(self, *names: str) -> Array:
         """(4, 4) of the first of `names` that is there: 3x4 or 3x3 numbers by rows. Raises InputError."""
-        name = self._present(names)
+        name = next((name for name in names if name in self._lines), names[0])
         count = 9 if name.startswith("R") else 12
         matrix = np.eye(4)
-        matrix[:3, : count // 3] = np.reshape(self._numbers(name, count), (3, count // 3))
+        matrix[:3, : count // 3] = np.reshape(self.numbers(name, count), (3, count // 3))
         return matrix
 
     def rotation_and_translation(self) -> Array:
         """(4, 4) of the lines R and T. Raises InputError."""
         matrix = self.transform("R")
-        matrix[:3, 3] = self._numbers(self._present(("T",)), 3)
+        matrix[:3, 3] = self.numbers("T", 3)
         return matrix
 
-    def _present(self, names: tuple[str, ...]) -> str:
-        name = next((name for name in names if name in self._lines), None)
-        if name is None:
-            raise InputError(f"{self._path}: no line '{names[0]}', expected one with its numbers")
-        return name
-
-    def _numbers(self, name: str, count: int) -> list[float]:
+    def numbers(self, name: str, count: int) -> list[float]:
+        """The `count` numbers of the line `name`. Raises InputError."""
+        if name not in self._lines:
+            raise InputError(f"{self._path}: no line '{name}', expected one with {count} numbers")
         line_number, numbers = self._lines[name]
         return parse_numbers(self._path, line_number, numbers, count)

@@ -60,6 +60,7 @@ class KittiRaw(IndexedSource):
             right, _ = _numbered(folder, number + 1)
         date = folder if (folder / CALIBRATION).is_file() else folder.resolve().parent
         pair = calibrated_pair(date / CALIBRATION, left_images, right)
+        _expect_rectified(date / CALIBRATION, left_images)
         indices = [_index_of(path) for path in files.paths]
         times_ns = _read_times_ns(folder / f"image_0{number}" / "timestamps.txt", indices)
         notes = list(pair.notes)
@@ -77,6 +78,16 @@ class KittiRaw(IndexedSource):
 def _numbered(folder: Path, number: int) -> tuple[NumberedImages, ImageFiles]:
     files = ImageFiles(folder / f"image_0{number}" / "data")
     return NumberedImages(number, folder / f"image_0{number}", files), files
+
+
+def _expect_rectified(calibration: Path, left: NumberedImages) -> None:
+    """The drives named _extract hold images as they were taken, larger than the rectified ones."""
+    width, height = KittiValues(calibration).numbers(f"S_rect_0{left.number}", 2)
+    if left.images.size != (width, height):
+        raise InputError(
+            f"{left.folder}: images of {'x'.join(map(str, left.images.size))} px, expected the {width:g}x{height:g} px "
+            f"of {calibration.name}'s S_rect_0{left.number}: a drive named _sync, rectified"
+        )
 
 
 def _index_of(path: Path) -> int:

@@ -19,7 +19,8 @@ from services.runtime.errors import InputError
 from services.runtime.session_scan import MAGIC
 
 _OWN_LIBRARY = "kinemap"
-_ROS_ENCODINGS = ("cdr",)
+_ROS_2_ENCODING = "cdr"
+_KNOWN_ENCODINGS = {_ROS_2_ENCODING, "protobuf"}
 
 
 class _Head(NamedTuple):
@@ -41,8 +42,11 @@ def open_mcap(path: Path, topics: TopicOptions, *, calibration: Path | None = No
     if head.summary is None:
         raise InputError(f"{path}: cut off or without an index, expected a whole MCAP file; `mcap recover` makes one")
     encodings = {channel.message_encoding for channel in head.summary.channels.values()}
+    if encodings and not encodings & _KNOWN_ENCODINGS:
+        found = ", ".join(sorted(encodings))
+        raise InputError(f"{path}: messages encoded as {found}, expected cdr (ROS 2) or protobuf (Foxglove)")
     beside = (path.with_suffix(".toml"), path.parent / "calibration.toml")
-    if encodings & {*_ROS_ENCODINGS}:
+    if _ROS_2_ENCODING in encodings:
         from services.camera.sources.ros_bag import RosBag
 
         return MessageSource(RosBag(path), topics, calibration=calibration, beside=beside)

@@ -63,7 +63,7 @@ def test_tum_and_euroc_folders_are_known(tmp_path: Path, make_images: Callable[.
 
 def test_kitti_drives_and_tracking_sequences_are_known(tmp_path: Path, make_images: Callable[..., Path]) -> None:
     make_images("2011_09_26/drive_sync/image_00/data", 1)
-    (tmp_path / "2011_09_26/calib_cam_to_cam.txt").write_text(f"{P0.replace('P0', 'P_rect_00')}\n")
+    (tmp_path / "2011_09_26/calib_cam_to_cam.txt").write_text(f"{P0.replace('P0', 'P_rect_00')}\nS_rect_00: 32 24\n")
     (tmp_path / "2011_09_26/drive_sync/image_00/timestamps.txt").write_text("2011-09-26 13:02:25.964389445\n")
     assert isinstance(_open(tmp_path / "2011_09_26/drive_sync"), KittiRaw)
     with pytest.raises(InputError, match=r"2011_09_26: holds 1 sequences, expected one of them, such as .*drive_sync"):

@@ -58,7 +58,7 @@ def drive(tmp_path: Path) -> Path:
         (folder / f"oxts/data/{index:010d}.txt").write_text(row + "\n")
     (date / "calib_cam_to_cam.txt").write_text(
         "calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.950000e-02\n"
-        f"S_rect_00: 32 24\nR_rect_00: 1 0 0 0 1 0 0 0 1\nP_rect_00: 20 0 16 0 0 20 12 0 0 0 1 0\n"
+        f"S_rect_02: 3.2e+01 2.4e+01\nR_rect_00: 1 0 0 0 1 0 0 0 1\nP_rect_00: 20 0 16 0 0 20 12 0 0 0 1 0\n"
         f"P_rect_02: {P2}\nP_rect_03: {P3}\n"
     )
     (date / "calib_velo_to_cam.txt").write_text(f"calib_time: 15-Mar-2012\nR: {VELO_TO_CAM}\nT: 0 -0.1 -0.3\n")
@@ -148,6 +148,12 @@ def test_without_extrinsics_it_says_that_there_is_no_truth(drive: Path) -> None:
         ("oxts/data/0000000001.txt", "90 " * 30, r"latitude 90, expected one between -90 and 90 degrees"),
         ("../calib_velo_to_cam.txt", "T: 0 0 0\n", r"calib_velo_to_cam\.txt: no line 'R'"),
         ("../calib_imu_to_velo.txt", "R: 1 0 0\nT: 0 0 0\n", r"calib_imu_to_velo\.txt line 1: 3 numbers, expected 9"),
+        ("../calib_cam_to_cam.txt", f"P_rect_02: {P2}\nP_rect_03: {P3}\n", r"no line 'S_rect_02', expected one with 2"),
+        (
+            "../calib_cam_to_cam.txt",
+            f"P_rect_02: {P2}\nP_rect_03: {P3}\nS_rect_02: 40 30\n",
+            r"image_02: images of 32x24 px, expected the 40x30 px of .* a drive named _sync",
+        ),
         ("../calib_cam_to_cam.txt", "S_rect_00: 32 24\n", r"calib_cam_to_cam\.txt: no projection matrix"),
     ],
 )

@@ -13,6 +13,7 @@ from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from google.protobuf.timestamp_pb2 import Timestamp
+from mcap.writer import Writer as McapWriter
 from mcap_protobuf.writer import Writer
 
 from services.camera.sources.mcap_file import open_mcap
@@ -122,6 +123,18 @@ def test_what_cannot_be_used_is_one_line(tmp_path: Path) -> None:
     assert "K of 0 numbers, expected 9" in said_of(("/camera", _raw(0)), ("/c", _calibration(K=[])))
     assert "/c: 64x24 px, expected 32x24" in said_of(("/camera", _raw(0)), ("/c", _calibration(width=64)))
     assert "encoding 'nv12'" in said_of(("/camera", _raw(0, encoding="nv12")))
+
+
+def test_an_encoding_that_is_not_known_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "drive.mcap"
+    with path.open("wb") as stream:
+        writer = McapWriter(stream)
+        writer.start()
+        schema = writer.register_schema("sensor_msgs/Image", "ros1msg", b"")
+        writer.register_channel("/cam/image_raw", "ros1", schema)
+        writer.finish()
+    with pytest.raises(InputError, match=r"drive\.mcap: messages encoded as ros1, expected cdr \(ROS 2\) or protobuf"):
+        open_mcap(path, TopicOptions())
 
 
 def test_a_file_that_is_cut_off_says_so(tmp_path: Path) -> None:
