@@ -12,6 +12,7 @@ import numpy as np
 from services.simulator.painting import shopfronts, storeys, town_surfaces
 from services.simulator.painting.library import paint_shared
 from services.simulator.painting.surfaces import Image, asphalt, coloured, leaves, noise, roof_tiles, speckle, to_image
+from services.simulator.painting.traffic_library import paint_traffic
 
 SHOPS = 9
 BOARDS = 8
@@ -65,7 +66,7 @@ def paint_town_library(seed: int) -> dict[str, Image]:
     for k in range(ARROWS):
         painters[f"arrow_{k}"] = partial(town_surfaces.arrow, kind=k)
     own = {name: paint(np.random.default_rng([seed, 23, *name.encode()])) for name, paint in painters.items()}
-    return paint_shared(seed) | own
+    return paint_shared(seed) | own | paint_traffic(seed)
 
 
 def _sign(rng: np.random.Generator, kind: int) -> Image:

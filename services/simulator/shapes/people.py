@@ -28,17 +28,20 @@ class Gait:
     """Which vertices belong to which swinging limb.
 
     pivot_z_m: (V,) height the vertex turns about. amplitude_rad: (V,) largest angle, signed; 0 for head and trunk.
+    pivot_x_m: (V,) place along x, or 0 for all. stride_m: way after which it is the same again.
     """
 
     pivot_z_m: NDArray[np.float64]
     amplitude_rad: NDArray[np.float64]
+    pivot_x_m: NDArray[np.float64] | float = 0.0
+    stride_m: float = _STRIDE_M
 
     def swung(self, vertices: NDArray[np.float64], walked_m: float) -> NDArray[np.float64]:
         """Vertices (V, 3) in the object frame after `walked_m` metres."""
-        angle = self.amplitude_rad * np.sin(2.0 * np.pi * walked_m / _STRIDE_M)
-        x, z = vertices[:, 0], vertices[:, 2] - self.pivot_z_m
+        angle = self.amplitude_rad * np.sin(2.0 * np.pi * walked_m / self.stride_m)
+        x, z = vertices[:, 0] - self.pivot_x_m, vertices[:, 2] - self.pivot_z_m
         cos, sin = np.cos(angle), np.sin(angle)
-        return np.column_stack([x * cos - z * sin, vertices[:, 1], x * sin + z * cos + self.pivot_z_m])
+        return np.column_stack([x * cos - z * sin + self.pivot_x_m, vertices[:, 1], x * sin + z * cos + self.pivot_z_m])
 
 
 def person_mesh(jacket: int, height_m: float, texture: Mapping[str, int], with_bag: bool) -> tuple[Mesh, Gait]:

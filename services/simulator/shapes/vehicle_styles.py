@@ -22,19 +22,20 @@ class VehicleStyle:
     parks: bool = True
 
 
-SALOON = VehicleStyle("saloon", "car", (4.44, 1.78, 1.46), 1.36, 0.16)
-HATCHBACK = VehicleStyle("hatchback", "car", (3.9, 1.72, 1.52), 1.22, 0.17)
+SALOON = VehicleStyle("town_saloon", "car", (4.44, 1.78, 1.46), 1.36, 0.16)
+HATCHBACK = VehicleStyle("town_hatchback", "car", (3.9, 1.72, 1.52), 1.22, 0.17)
 ESTATE = VehicleStyle("estate", "car", (4.66, 1.82, 1.5), 1.4, 0.12)
-SUV = VehicleStyle("suv", "car", (4.6, 1.9, 1.74), 1.36, 0.14)
+SUV = VehicleStyle("suv", "car", (4.58, 1.9, 1.74), 1.36, 0.14)
 SPORTS = VehicleStyle("sports", "car", (4.3, 1.84, 1.26), 1.26, 0.04)
-TAXI = VehicleStyle("taxi", "car", (4.6, 1.8, 1.62), 1.4, 0.06)
+TAXI = VehicleStyle("taxi", "car", (4.6, 1.8, 1.66), 1.4, 0.06)
 PICKUP = VehicleStyle("pickup", "car", (5.1, 1.88, 1.78), 1.6, 0.05)
-VAN = VehicleStyle("van", "car", (4.72, 1.94, 2.06), 1.48, 0.08)
-DELIVERY = VehicleStyle("delivery", "truck", (5.7, 2.04, 2.56), 1.75, 0.06, parks=False)
+VAN = VehicleStyle("town_van", "car", (4.72, 1.94, 2.06), 1.48, 0.08)
+DELIVERY = VehicleStyle("delivery", "truck", (5.7, 2.04, 2.6), 1.75, 0.06, parks=False)
 BOX_LORRY = VehicleStyle("box_lorry", "truck", (7.9, 2.4, 3.3), 2.3, 0.04, in_every_lane=False, parks=False)
 FLATBED = VehicleStyle("flatbed", "truck", (7.6, 2.36, 2.7), 2.2, 0.025, in_every_lane=False, parks=False)
 BUS = VehicleStyle("bus", "bus", (10.8, 2.5, 3.05), 2.95, 0.04, in_every_lane=False, parks=False)
-BICYCLE = VehicleStyle("bicycle", "bicycle", (1.74, 0.6, 1.06), 0.53, 0.08, in_every_lane=False, parks=False)
+BICYCLE = VehicleStyle("bicycle", "bicycle", (1.74, 0.6, 1.1), 0.53, 0.08, in_every_lane=False, parks=False)
 
 CARS = (SALOON, HATCHBACK, ESTATE, SUV, SPORTS, TAXI, PICKUP, VAN)
-KINDS = (*CARS, DELIVERY, BOX_LORRY, FLATBED, BUS, BICYCLE)
+LARGE = (DELIVERY, BOX_LORRY, FLATBED, BUS)
+KINDS = (*CARS, *LARGE, BICYCLE)

@@ -25,7 +25,7 @@ BELT_M = 1.0
 class BodyStyle:
     """Outline of a car seen from its left, (x, z) in metres from the rear bumper over the roof to the front one.
 
-    rear_glass and windscreen: numbers of the outline's pieces that are glass.
+    rear_glass and windscreen: numbers of the outline's pieces that are glass. headlamp_m: height of their middle.
     """
 
     name: str
@@ -34,6 +34,7 @@ class BodyStyle:
     rear_glass: int
     windscreen: int
     axles_m: tuple[float, float]
+    headlamp_m: float = 0.68
 
     @property
     def size_m(self) -> tuple[float, float, float]:
@@ -139,7 +140,7 @@ def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int]) -> Mesh:
             hub = np.array([x, y * (style.half_width_m - 0.2), WHEEL_RADIUS_M])
             rim = np.array([x, y * (style.half_width_m + 0.02), WHEEL_RADIUS_M])
             pieces.append(tube(hub, rim, (WHEEL_RADIUS_M, WHEEL_RADIUS_M), texture["wheel"], 12, repeat=(6.0, 0.05)))
-    for end, z, lamp_z in ((rear_x - 0.03, 0.66, 0.84), (front_x + 0.03, 0.42, 0.68)):
+    for end, z, lamp_z in ((rear_x - 0.03, 0.66, 0.84), (front_x + 0.03, 0.42, style.headlamp_m)):
         across = np.array([0.27, -0.27, -0.27, 0.27])
         plate = np.column_stack(
             [np.full(4, end), across if end < 0 else -across, z + np.array([0.06, 0.06, -0.06, -0.06])]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from services.simulator.actors.actor import Actor
 from services.simulator.actors.motion import Path, SpeedProfile
 from services.simulator.options import DriveOptions
+from services.simulator.shapes.vehicle_styles import BICYCLE, VehicleStyle
 from services.simulator.worlds.town.paths import LoopPath, Shift, StraightPath, Sway
 from services.simulator.worlds.town.plan import TownPlan
 from services.simulator.worlds.town.profile import LANE_CENTRES_M
@@ -69,7 +70,7 @@ class _Planner:
             int(np.ceil(self._end_s / STEP_S))
         )
         for row, one in enumerate(placed[1:], 1):
-            self._drive(one.vehicle, *self._on_loop(state, row, one.track), speeds[row])
+            self._drive(one.vehicle, *self._on_loop(state, row, one.track, one.vehicle.style), speeds[row])
         for starter in pull_outs:
             self._pull_out(starter, state, speeds[starter.row])
         for stander in parked:
@@ -82,11 +83,12 @@ class _Planner:
             self._add_person(person.path, person.speed, person.look)
         return self._actors, self._camera(state, speeds[0])
 
-    def _on_loop(self, state: VehicleState, row: int, track: int) -> tuple[Path, float]:
+    def _on_loop(self, state: VehicleState, row: int, track: int, style: VehicleStyle | None) -> tuple[Path, float]:
         """Path of a vehicle that is on the loop from the start, and when that is."""
         outside = -1.0 if track < 2 else 1.0
         length_m = float(state.length_m[row])
-        n = outside * LANE_CENTRES_M[track % 2]
+        out_m = _CYCLIST_OUT_M if style is BICYCLE else 0.0
+        n = outside * (LANE_CENTRES_M[track % 2] + out_m)
         ahead = 1.0 if track < 2 else -1.0
         return self._loop_path(
             ahead, ahead * float(state.enter_x_m[row]), n, shifts=state.shifts[row], length_m=length_m, row=row
@@ -104,6 +106,9 @@ class _Planner:
         profile = _profile(speeds, begin_s)
         looks = self._wardrobe.vehicle(vehicle.style, vehicle.look)
         self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **looks))
+        if vehicle.style is BICYCLE:
+            rider = self._wardrobe.rider(vehicle.look)
+            self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **rider))
 
     def _pull_out(self, one: PullOut, state: VehicleState, speeds: Floats) -> None:
         parked = one.parked
