@@ -31,14 +31,16 @@ def cloth_painters() -> dict[str, Callable[[np.random.Generator], Image]]:
         "cloth_checked": _checked,
         "cloth_knit": _knit,
         "cloth_print": _print,
-        "jeans_grey": lambda rng: to_image(
-            coloured(noise(rng, 64, 64, [(4, 26), (14, 24), (40, 14)]), (200, 200, 200))
-        ),
+        "jeans_grey": _jeans,
         "skin_tinted": lambda rng: to_image(coloured(noise(rng, 32, 32, [(6, 10)]), (222.0, 222.0, 222.0))),
     }
     for number in range(FACES):
         painters[f"face_{number}"] = lambda rng, number=number: _face(rng, number)  # type: ignore[misc]
     return painters
+
+
+def _jeans(rng: np.random.Generator) -> Image:
+    return to_image(coloured(noise(rng, 64, 64, [(4, 26), (14, 24), (40, 14)]), (200.0, 200.0, 200.0)))
 
 
 def _cloth(rng: np.random.Generator) -> Floats32:

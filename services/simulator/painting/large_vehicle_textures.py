@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Painted sides and ends of buses, lorries and delivery vans; each picture is a whole side as somebody beside it sees it."""
+"""Painted sides and ends of buses, lorries and delivery vans; each picture is a whole side, seen from beside it."""
 
 from __future__ import annotations
 

@@ -88,11 +88,10 @@ def townsperson_mesh(clothes: Clothes, texture: Mapping[str, int]) -> tuple[Mesh
     bare = clothes.skirt and not clothes.coat
     pieces: list[tuple[Mesh, float, float]] = []
     for side in (-1.0, 1.0):
-        leg_skin = (skin, clothes.skin_tint) if bare else (legs, clothes.legs_tint)
         foot = (0.01, 0.095 * side, 0.07)
-        leg = tube(
-            (0, 0.095 * side, _HIP_M), foot, (0.095 * stout, 0.055), leg_skin[0], 6, tint=leg_skin[1], caps=False
-        )
+        radii = (0.095 * stout, 0.055)
+        cover, colour = (skin, clothes.skin_tint) if bare else (legs, clothes.legs_tint)
+        leg = tube((0, 0.095 * side, _HIP_M), foot, radii, cover, 6, tint=colour, caps=False)
         shoe = box((0.27, 0.1, 0.09), (0.06, 0.095 * side, 0.045), texture["rubber"])
         wide = 0.21 + 0.03 * stout
         hand = (0.05, side * (wide + 0.035), 0.84)
@@ -102,14 +101,14 @@ def townsperson_mesh(clothes: Clothes, texture: Mapping[str, int]) -> tuple[Mesh
         pieces += [(arm, _SHOULDER_M, -0.36 * side), (fist, _SHOULDER_M, -0.36 * side)]
     waist, chest = (0.15 * stout, 0.17 * stout) if not clothes.coat else (0.18 * stout, 0.19 * stout)
     trunk = [
-        _drum(0.84, 1.22, waist, waist, top, tint),
-        _drum(1.22, 1.44, waist, chest * 1.08, top, tint),
-        _drum(1.44, 1.52, chest * 1.08, 0.06, top, tint),
+        _drum((0.84, 1.22), (waist, waist), top, tint),
+        _drum((1.22, 1.44), (waist, chest * 1.08), top, tint),
+        _drum((1.44, 1.52), (chest * 1.08, 0.06), top, tint),
     ]
     if clothes.coat:
-        trunk.append(_drum(0.5, 0.86, waist * 1.25, waist, top, tint))
+        trunk.append(_drum((0.5, 0.86), (waist * 1.25, waist), top, tint))
     elif clothes.skirt:
-        trunk.append(_drum(0.48, 0.92, waist * 1.45, waist * 0.98, legs, clothes.legs_tint))
+        trunk.append(_drum((0.48, 0.92), (waist * 1.45, waist * 0.98), legs, clothes.legs_tint))
     trunk.append(tube((0, 0, 1.46), (0.01, 0, 1.56), (0.06, 0.055), skin, 5, tint=clothes.skin_tint, caps=False))
     trunk.append(blob((0.02, 0, 1.64), (0.1, 0.085, 0.135), texture[clothes.face], sides=8, repeat=(1.0, 1.0)))
     if clothes.hat:
@@ -127,9 +126,9 @@ def townsperson_mesh(clothes: Clothes, texture: Mapping[str, int]) -> tuple[Mesh
     return mesh, gait, (0.6 * scale, 0.6 * scale, clothes.height_m)
 
 
-def _drum(low_m: float, high_m: float, low_radius: float, high_radius: float, texture: int, tint: Tint) -> Mesh:
-    """A piece of the body, wider than it is deep."""
+def _drum(at_m: tuple[float, float], radii_m: tuple[float, float], texture: int, tint: Tint) -> Mesh:
+    """A piece of the body between two heights with its radii there, wider than it is deep."""
     flat = np.diag([0.72, 1.25, 1.0, 1.0])
     return tube(
-        (0, 0, high_m), (0, 0, low_m), (high_radius, low_radius), texture, 8, tint=tint, repeat=(2.0, 0.6), caps=False
+        (0, 0, at_m[1]), (0, 0, at_m[0]), radii_m[::-1], texture, 8, tint=tint, repeat=(2.0, 0.6), caps=False
     ).transformed(flat)

@@ -25,8 +25,8 @@ def wheels(
     pieces = []
     for x in axles_m:
         for side in (-1.0, 1.0):
-            rim = ring + [x, side * half_width_m, radius_m]
-            inner = rim - [0.0, side * thick_m, 0.0]
+            rim = ring + np.array([x, side * half_width_m, radius_m])
+            inner = rim - np.array([0.0, side * thick_m, 0.0])
             u = np.arange(_SIDES + 1) * 0.6
             uv = np.stack(np.broadcast_arrays(u[None, :], np.array([[0.0], [0.1]])), axis=-1)
             pieces.append(surface(np.stack([inner, rim]), uv, texture["rubber"]))
@@ -37,7 +37,7 @@ def wheels(
 def upright(
     x_m: float, across: tuple[float, float], up: tuple[float, float], texture: int, *, tint: Tint = WHITE
 ) -> Mesh:
-    """A picture that faces forward or back at x, from y = across[0] (its left edge) to across[1], z from up[0] to up[1]."""
+    """A picture that faces forward or back at x; across: y of its left and right edge, up: z of its lower and upper."""
     corners = [
         [x_m, across[0], up[1]],
         [x_m, across[1], up[1]],

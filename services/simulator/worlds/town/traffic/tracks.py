@@ -55,7 +55,7 @@ class Tracks:
 
     def around(self, track: Ints, x: Floats) -> Floats:
         """x brought into the first round of closed tracks."""
-        return np.where(self.closed[track], x % self.length_m[track], x)
+        return np.asarray(np.where(self.closed[track], x % self.length_m[track], x))
 
     def arc_m(self, track: Ints, around: Floats) -> Floats:
         """Length of the lane since x = 0, for x within the first round."""
