@@ -83,25 +83,25 @@ def _make_data_set(out: Path, request: DataSetRequest, jobs: int, console: Conso
     data_set = DataSet(out, request)
     progress = FrameProgress(console, request.frame_count)
     with data_set.locked():
-        left = data_set.frames_left()
-        if not data_set.complete:
-            missing = sum(map(len, left.values()))
-            progress.begin(request.frame_count - missing)
-            try:
+        try:
+            left = data_set.frames_left()
+            if data_set.complete:
+                console.print("complete already: nothing to do", highlight=False)
+            else:
+                missing = sum(map(len, left.values()))
+                progress.begin(request.frame_count - missing)
                 with progress:
                     for done in render_frames(out, request, left, min(jobs, missing)):
                         progress.frame_done(done.sequence)
                 data_set.finish()
-            except KeyboardInterrupt:
-                print(
-                    f"interrupted: {progress.done} of {request.frame_count} frames are in {out}; "
-                    "the same command goes on with the others",
-                    file=sys.stderr,
-                )
-                raise typer.Exit(INTERRUPTED) from None
-            console.print(f"complete: {progress.summary()}", highlight=False, soft_wrap=True)
-        else:
-            console.print("complete already: nothing to do", highlight=False)
+                console.print(f"complete: {progress.summary()}", highlight=False, soft_wrap=True)
+        except KeyboardInterrupt:
+            print(
+                f"interrupted: {progress.done} of {request.frame_count} frames are in {out}; "
+                "the same command goes on with the others",
+                file=sys.stderr,
+            )
+            raise typer.Exit(INTERRUPTED) from None
     print(out)
 
 

@@ -9,6 +9,8 @@ from typing import Self
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
+from services.cli.bench.progress import duration
+
 _PLAIN_EVERY_S = 10.0
 _RATE_FRAMES = 100
 
@@ -34,7 +36,8 @@ class FrameProgress:
         """So many are there from an earlier time."""
         self.done = done
         self._started_s = time.monotonic()
-        self._recent: deque[float] = deque([self._started_s], maxlen=_RATE_FRAMES)
+        # Without the start: until the first frame is there, worlds are built.
+        self._recent: deque[float] = deque(maxlen=_RATE_FRAMES)
         self._said_s = self._started_s
         if self._bar is not None:
             self._task = self._bar.add_task("frames", total=self._total, completed=done, now="building the world")
@@ -47,18 +50,23 @@ class FrameProgress:
         self._rendered += 1
         now_s = time.monotonic()
         self._recent.append(now_s)
-        rate = (len(self._recent) - 1) / max(now_s - self._recent[0], 1e-6)
-        now = f"{rate:.1f} frames/s, {(self._total - self.done) / rate:.0f} s left, sequence {sequence}"
+        now = f"{self._speed(now_s)}sequence {sequence}"
         if self._bar is not None:
             self._bar.update(self._task, completed=self.done, now=now)
         elif now_s - self._said_s >= _PLAIN_EVERY_S:
             self._said_s = now_s
             self._console.print(f"{self.done}/{self._total} frames, {now}", highlight=False, soft_wrap=True)
 
+    def _speed(self, now_s: float) -> str:
+        if len(self._recent) < 2:
+            return ""
+        rate = (len(self._recent) - 1) / max(now_s - self._recent[0], 1e-6)
+        return f"{rate:.1f} frames/s, {duration((self._total - self.done) / rate)} left, "
+
     def summary(self) -> str:
         """What was done since `begin`, in a few words."""
         wall_s = max(time.monotonic() - self._started_s, 1e-6)
-        return f"{self.done} frames, {self._rendered} of them rendered in {wall_s:.0f} s"
+        return f"{self.done} frames, {self._rendered} of them rendered in {duration(wall_s)}"
 
     def __enter__(self) -> Self:
         if self._bar is not None:

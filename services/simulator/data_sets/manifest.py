@@ -57,7 +57,7 @@ def require_same_options(root: Path, manifest: Manifest, request: DataSetRequest
     if found is not None:
         name, there, asked = found
         raise InputError(
-            f"{root}: was made with {name}={shortened(there)}, asked for is {shortened(asked)};"
+            f"{root}: was made with {name}={_shown(there)}, asked for is {_shown(asked)};"
             " expected the same options or another --out"
         )
 
@@ -77,6 +77,10 @@ def missing_files(root: Path) -> list[str]:
         return [CHECKSUMS]
     names = [line.split("  ", 1)[1] for line in path.read_text(encoding="ascii").splitlines()]
     return [name for name in names if not (root / name).is_file()]
+
+
+def _shown(value: object) -> str:
+    return ",".join(map(str, value)) if isinstance(value, list) else shortened(value)
 
 
 def _as_text(manifest: Manifest) -> str:

@@ -11,6 +11,8 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
+import cv2
+
 from services.runtime.errors import KinemapError, ResourceError
 from services.simulator.data_sets.frame_writer import FrameWriter
 from services.simulator.data_sets.request import DataSetRequest
@@ -118,6 +120,7 @@ def _received(here: Connection, process: BaseProcess) -> object:
 def _work(there: Connection, root: Path, request: DataSetRequest) -> None:
     # Ctrl-C reaches every process of the terminal; the parent ends the others.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    cv2.setNumThreads(1)
     renderer = ChunkRenderer(root, request)
     try:
         while True:
