@@ -16,6 +16,7 @@ from services.cli.replay import replay
 from services.cli.run import run
 from services.cli.simulate import simulate
 from services.cli.status import status
+from services.cli.thesis.app import thesis_app
 from services.cli.up import up
 from services.runtime.errors import KinemapError
 
@@ -32,6 +33,7 @@ for command in (run, up, down, status, record, replay, export, bench, simulate):
     app.command()(command)
 app.add_typer(config_app, name="config")
 app.add_typer(evaluate_app, name="evaluate")
+app.add_typer(thesis_app, name="thesis")
 app.command()(doctor)
 
 
