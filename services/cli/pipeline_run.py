@@ -12,7 +12,7 @@ from services.cli.progress_view import progress_view
 from services.cli.run_progress import RunProgress
 from services.cli.run_results import export_results, print_summary, report_results
 from services.cli.run_watch import WATCHED_TOPICS, RunWatch
-from services.evaluation.run_outcome import Report, RunOutcome
+from services.evaluation.run.outcome import Report, RunOutcome
 from services.runtime.bus import Bus
 from services.runtime.config import Config
 from services.runtime.errors import KinemapError

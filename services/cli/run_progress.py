@@ -5,7 +5,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from schemas.records import Density, Heartbeat, MotionState, TrackedFrame
-from services.evaluation.run_outcome import ServiceUsage
+from services.evaluation.run.outcome import ServiceUsage
 
 _RATE_WINDOW_S = 5.0
 _LANDMARKS = "landmarks_"

@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
-from services.evaluation.summary import summary_rows
+from services.evaluation.run.outcome import Report, RunOutcome, ServiceUsage
+from services.evaluation.run.summary import summary_rows
 from services.runtime.config import Config
 from services.runtime.errors import InputError
 
@@ -37,7 +37,7 @@ def report_results(
     config: Config, outcome: RunOutcome, services: Mapping[str, ServiceUsage], recover: bool
 ) -> Report | None:
     """report.json and plots/; None where the run ended before anything was recorded."""
-    from services.evaluation.run_folder import evaluate_run
+    from services.evaluation.run.folder import evaluate_run
 
     folder = config.run.out
     if services:

@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from services.cli.simulate_progress import FrameProgress
-from services.evaluation.contact_sheet import SheetRow, draw_contact_sheet, write_sheet
+from services.evaluation.pictures.contact_sheet import SheetRow, draw_contact_sheet, write_sheet
 from services.runtime.errors import InputError
 from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions

@@ -9,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 
 from services.cli.run_folder import RUNS
-from services.evaluation.bench_file import BENCH_NAME
+from services.evaluation.bench.file import BENCH_NAME
 from services.runtime.errors import InputError, ResourceError
 
 

@@ -13,8 +13,8 @@ from services.cli.bench.plan import PlannedRun
 from services.cli.bench.progress import BenchProgress
 from services.cli.bench.results import BenchOutput, draw, print_tables, put_on_page
 from services.cli.bench.schedule import Schedule
-from services.evaluation.bench_file import Bench, write_bench
-from services.evaluation.bench_runs import BenchRun, RunStatus
+from services.evaluation.bench.file import Bench, write_bench
+from services.evaluation.bench.runs import BenchRun, RunStatus
 from services.evaluation.measurements_page import machine
 from services.runtime.errors import KinemapError
 

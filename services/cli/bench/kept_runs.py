@@ -12,7 +12,7 @@ from typing import Any
 import services
 from services.cli.bench.child_run import RunEnd
 from services.cli.bench.plan import PlannedRun
-from services.evaluation.bench_runs import BenchRun, measures_of
+from services.evaluation.bench.runs import BenchRun, measures_of
 from services.runtime.errors import InputError, KinemapError
 
 _CODE = ("*.py", "*.so", "*.sql")
@@ -78,7 +78,7 @@ class KeptRuns:
         return digest.hexdigest()
 
     def _bench_run(self, run: PlannedRun, end: RunEnd, alone: bool) -> BenchRun:
-        from services.evaluation.report import read_report
+        from services.evaluation.run.report import read_report
 
         failure, measures = end.failure, None
         try:

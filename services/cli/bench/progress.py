@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
 from services.cli.bench.schedule import Schedule
-from services.evaluation.bench_runs import BenchRun
+from services.evaluation.bench.runs import BenchRun
 
 
 class BenchProgress:

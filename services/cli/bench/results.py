@@ -9,8 +9,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from services.evaluation.bench_runs import BenchRun
-from services.evaluation.bench_table import setbacks, summary_table
+from services.evaluation.bench.runs import BenchRun
+from services.evaluation.bench.table import setbacks, summary_table
 
 _LOG_WIDTH = 160
 ERRORS_NAME, TRIALS_NAME = "errors.png", "trials.png"
@@ -29,7 +29,7 @@ class BenchOutput:
 
 def print_tables(console: Console, runs: Sequence[BenchRun]) -> None:
     """A table an input, its variants side by side, then the variants against each other, then who is not in them."""
-    from services.evaluation.bench_ratios import ratio_table
+    from services.evaluation.bench.ratios import ratio_table
 
     if not console.is_terminal:
         console.width = _LOG_WIDTH
@@ -52,8 +52,8 @@ def print_tables(console: Console, runs: Sequence[BenchRun]) -> None:
 
 def draw(runs: Sequence[BenchRun], folder: Path, label: str) -> list[Path]:
     """The pictures of whatever can be drawn, in `folder`; returns them."""
-    from services.evaluation.bench_paths import read_paths
-    from services.evaluation.bench_plots import plot_axes, plot_errors, plot_trials
+    from services.evaluation.bench.paths import read_paths
+    from services.evaluation.bench.plots import plot_axes, plot_errors, plot_trials
 
     paths = read_paths(runs, folder)
     if not paths:
@@ -69,8 +69,8 @@ def draw(runs: Sequence[BenchRun], folder: Path, label: str) -> list[Path]:
 
 def markdown(runs: Sequence[BenchRun], note: str = "") -> str:
     """Both tables as Markdown, and what their numbers are."""
-    from services.evaluation.bench_ratios import ratio_table
-    from services.evaluation.bench_runs import LEAST_COVERAGE
+    from services.evaluation.bench.ratios import ratio_table
+    from services.evaluation.bench.runs import LEAST_COVERAGE
     from services.evaluation.measurements_page import markdown_table
 
     parts = [

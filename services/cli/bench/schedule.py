@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from services.cli.bench.child_run import RunEnd, Runner, RunningRun
 from services.cli.bench.kept_runs import KeptRuns
 from services.cli.bench.plan import PlannedRun
-from services.evaluation.bench_runs import BenchRun
+from services.evaluation.bench.runs import BenchRun
 
 _LOOK_EVERY_S = 0.5
 

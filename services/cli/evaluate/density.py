@@ -24,11 +24,11 @@ def density(
     plots: PlotsFlag = None,
 ) -> None:
     """Error of the density in moving objects, and in high and low; frames of unknown density stand apart."""
-    from services.evaluation.comparison import ComparisonRow
-    from services.evaluation.density_error import density_error
-    from services.evaluation.density_session import read_densities
-    from services.evaluation.density_table import density_rows
-    from services.evaluation.true_density import TrueDensityRules
+    from services.evaluation.density.error import density_error
+    from services.evaluation.density.session import read_densities
+    from services.evaluation.density.table import density_rows
+    from services.evaluation.density.truth import TrueDensityRules
+    from services.evaluation.run.comparison import ComparisonRow
 
     if not (math.isfinite(min_height) and min_height >= 0.0):
         raise InputError(f"--min-height {min_height:g}: expected pixels, 0 or more")
@@ -48,6 +48,6 @@ def density(
     }
     keep_json({"session": str(session), **measured}, json_file)
     if plots is not None:
-        from services.evaluation.density_plots import plot_density_error
+        from services.evaluation.density.plots import plot_density_error
 
         plot_density_error(densities, plots_folder(plots) / "density.png")

@@ -25,9 +25,9 @@ def flow(
     plots: PlotsFlag = None,
 ) -> None:
     """Endpoint error and KITTI's Fl, all and not occluded; pictures of the worst images."""
-    from services.evaluation.optical_flow_input import find_flow_pairs
-    from services.evaluation.optical_flow_score import flow_score
-    from services.evaluation.optical_flow_table import COLUMNS, describe_flow, flow_rows
+    from services.evaluation.optical_flow.inputs import find_flow_pairs
+    from services.evaluation.optical_flow.score import flow_score
+    from services.evaluation.optical_flow.table import COLUMNS, describe_flow, flow_rows
 
     folder = None if plots is None else plots_folder(plots)
     pairs = find_flow_pairs(found, truth, not_occluded)
@@ -37,7 +37,7 @@ def flow(
         print(f"{len(pairs.missing)} true images have no flow in {found} and do not count, {pairs.missing[0]} first")
     keep_json({"found": str(found), "truth": str(truth), "missing": pairs.missing, **describe_flow(score)}, json_file)
     if folder is not None:
-        from services.evaluation.optical_flow_plots import plot_flow_errors, plot_flow_pair
+        from services.evaluation.optical_flow.plots import plot_flow_errors, plot_flow_pair
 
         plot_flow_errors(score, folder / "flow_errors.png")
         worst = sorted(pairs.pairs, key=lambda pair: -(score.by_image[pair.name][1] or 0.0))[:_PICTURES]

@@ -10,13 +10,13 @@ from rich.progress import Progress
 
 from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
 from services.cli.evaluate.session import RecoverFlag, session_of
-from services.evaluation.alignment import Alignment
+from services.evaluation.trajectory.alignment import Alignment
 from services.formats.point_cloud import LabelledPoints
 from services.runtime.errors import InputError
 
 if TYPE_CHECKING:  # matplotlib and scipy are loaded by who needs them
-    from services.evaluation.map_alignment import MapAlignment
-    from services.evaluation.surface import SurfaceOptions
+    from services.evaluation.map.alignment import MapAlignment
+    from services.evaluation.map.surface import SurfaceOptions
 
 MAP_NAME = "map.pcd"
 NOT_ALIGNED = "none: the map is taken to be in the surface's frame"
@@ -49,10 +49,10 @@ def evaluate_map(
     plots: PlotsFlag = None,
 ) -> None:
     """Chamfer distance of a map to the true surface, and how many landmarks are called what they are."""
-    from services.evaluation.comparison import ComparisonRow
-    from services.evaluation.map_error import MapErrorRules, map_error
-    from services.evaluation.map_table import describe_map_error, map_rows
-    from services.evaluation.surface import SurfaceOptions
+    from services.evaluation.map.error import MapErrorRules, map_error
+    from services.evaluation.map.surface import SurfaceOptions
+    from services.evaluation.map.table import describe_map_error, map_rows
+    from services.evaluation.run.comparison import ComparisonRow
     from services.formats.point_cloud import read_points
 
     rules = MapErrorRules(within, near, label_within)
@@ -69,8 +69,8 @@ def evaluate_map(
     print_table([source.resolve().name], [ComparisonRow(what, (value,)) for what, value in rows])
     keep_json({"map": str(source), "alignment": rows[0][1], **describe_map_error(error, rules)}, json_file)
     if plots is not None:
-        from services.evaluation.ground_plane import FLAT, ground_plane
-        from services.evaluation.map_plots import plot_label_confusion, plot_map_error
+        from services.evaluation.map.plots import plot_label_confusion, plot_map_error
+        from services.evaluation.trajectory.ground_plane import FLAT, ground_plane
 
         folder = plots_folder(plots)
         plane = FLAT if alignment is None else ground_plane(alignment.truth.world_from_camera)
@@ -81,9 +81,9 @@ def evaluate_map(
 def _alignment(
     source: Path, trajectory: Path | None, truth: Path | None, times: Path | None, align: Alignment
 ) -> "MapAlignment | None":
-    from services.evaluation.map_alignment import map_alignment
-    from services.evaluation.run_folder import TRAJECTORY_NAME, TRUTH_NAME
-    from services.evaluation.trajectory_files import read_trajectory
+    from services.evaluation.map.alignment import map_alignment
+    from services.evaluation.run.folder import TRAJECTORY_NAME, TRUTH_NAME
+    from services.evaluation.trajectory.files import read_trajectory
 
     if source.is_dir():
         trajectory, truth = trajectory or source / TRAJECTORY_NAME, truth or source / TRUTH_NAME
@@ -95,7 +95,7 @@ def _alignment(
 
 
 def _recorded_surface(run: Path, options: "SurfaceOptions", recover: bool) -> LabelledPoints:
-    from services.evaluation.session_surface import session_surface
+    from services.evaluation.map.session_surface import session_surface
 
     with Progress(console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("true surface", total=None)

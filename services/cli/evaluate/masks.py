@@ -31,11 +31,11 @@ def masks(
     plots: PlotsFlag = None,
 ) -> None:
     """Average precision by pycocotools, its mean over IoU 0 to 1 as in the thesis, and precision and recall."""
-    from services.evaluation.instance_masks import mask_precision
-    from services.evaluation.instance_masks_confusion import class_confusion
-    from services.evaluation.instance_masks_found import FoundRules, found_scores
-    from services.evaluation.instance_masks_input import read_mask_input
-    from services.evaluation.instance_masks_table import MEAN, describe_masks, mask_rows
+    from services.evaluation.instance_masks.average_precision import mask_precision
+    from services.evaluation.instance_masks.confusion import class_confusion
+    from services.evaluation.instance_masks.found import FoundRules, found_scores
+    from services.evaluation.instance_masks.inputs import read_mask_input
+    from services.evaluation.instance_masks.table import MEAN, describe_masks, mask_rows
 
     folder = None if plots is None else plots_folder(plots)
     rules = FoundRules(minimum_height_px=min_height, minimum_score=min_score)
@@ -56,7 +56,7 @@ def masks(
     measured = describe_masks(score, tall, confusion, rules)
     keep_json({"found": str(found), "truth": str(truth), "frames": frames, **measured}, json_file)
     if folder is not None:
-        from services.evaluation.instance_masks_plots import (
+        from services.evaluation.instance_masks.plots import (
             plot_class_confusion,
             plot_precision_by_iou,
             plot_precision_recall,

@@ -28,8 +28,8 @@ def moving(
     plots: PlotsFlag = None,
 ) -> None:
     """IoU of moving, non-moving and background and their mean; precision and recall of the flag of instances."""
-    from services.evaluation.moving_masks_score import FlagRules, score_moving_masks
-    from services.evaluation.moving_masks_table import describe_moving, moving_rows
+    from services.evaluation.moving_masks.score import FlagRules, score_moving_masks
+    from services.evaluation.moving_masks.table import describe_moving, moving_rows
 
     folder = None if plots is None else plots_folder(plots)
     rules = FlagRules(minimum_height_px=min_height)
@@ -41,7 +41,7 @@ def moving(
         print(f"{result.without_truth} frames of {found} have no truth and do not count")
     keep_json({"found": str(found), "truth": str(truth), **describe_moving(result, rules)}, json_file)
     if folder is not None:
-        from services.evaluation.moving_masks_plots import plot_confusion, plot_iou_over_frames
+        from services.evaluation.moving_masks.plots import plot_confusion, plot_iou_over_frames
 
         plot_confusion(result, folder / "moving_confusion.png")
         plot_iou_over_frames(result, folder / "moving_iou.png")

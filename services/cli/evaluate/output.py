@@ -9,8 +9,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from services.evaluation.comparison import ComparisonRow
-from services.evaluation.run_outcome import Report
+from services.evaluation.run.comparison import ComparisonRow
+from services.evaluation.run.outcome import Report
 from services.runtime.errors import InputError, ResourceError
 
 _LOG_WIDTH = 160
@@ -35,7 +35,7 @@ def print_table(columns: Sequence[str], rows: Sequence[ComparisonRow]) -> None:
 
 def keep_json(values: Report, path: Path | None) -> None:
     """Write `values` where a file was asked for. Raises ResourceError where it cannot be written."""
-    from services.evaluation.report import write_report
+    from services.evaluation.run.report import write_report
 
     if path is None:
         return

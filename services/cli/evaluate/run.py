@@ -11,8 +11,8 @@ from services.cli.evaluate.output import print_table
 from services.cli.evaluate.session import RecoverFlag
 from services.cli.run_folder import CONFIG_NAME, newest_run_folder
 from services.cli.run_results import USAGE_NAME, print_summary, read_usage
-from services.evaluation.comparison import compare
-from services.evaluation.run_outcome import RunOutcome
+from services.evaluation.run.comparison import compare
+from services.evaluation.run.outcome import RunOutcome
 from services.runtime.config import load_config
 from services.runtime.errors import InputError
 
@@ -32,7 +32,7 @@ def run(
 
 
 def _compare(folders: list[Path]) -> None:
-    from services.evaluation.report import read_report
+    from services.evaluation.run.report import read_report
 
     reports = []
     for folder in folders:
@@ -43,8 +43,8 @@ def _compare(folders: list[Path]) -> None:
 
 
 def _evaluate_folder(given: Path, recover: bool) -> None:
-    from services.evaluation.report import read_report
-    from services.evaluation.run_folder import evaluate_run
+    from services.evaluation.run.folder import evaluate_run
+    from services.evaluation.run.report import read_report
 
     folder = newest_run_folder(given)
     config = load_config(folder / CONFIG_NAME)

@@ -28,9 +28,9 @@ def tracking(
     plots: PlotsFlag = None,
 ) -> None:
     """HOTA, MOTA and IDF1 by trackeval, each class by itself, under KITTI's rules of what counts."""
-    from services.evaluation.object_tracking_input import known_categories, read_sequence_pairs
-    from services.evaluation.object_tracking_score import tracking_scores
-    from services.evaluation.object_tracking_table import describe_tracking, tracking_rows
+    from services.evaluation.object_tracking.inputs import known_categories, read_sequence_pairs
+    from services.evaluation.object_tracking.score import tracking_scores
+    from services.evaluation.object_tracking.table import describe_tracking, tracking_rows
 
     folder = None if plots is None else plots_folder(plots)
     pairs = read_sequence_pairs(found, truth, bar)
@@ -38,7 +38,7 @@ def tracking(
     print_table(list(scores), tracking_rows(scores))
     keep_json({"found": str(found), "truth": str(truth), **describe_tracking(scores)}, json_file)
     if folder is not None:
-        from services.evaluation.object_tracking_plots import plot_hota_by_iou, plot_sequences
+        from services.evaluation.object_tracking.plots import plot_hota_by_iou, plot_sequences
 
         plot_hota_by_iou(scores, folder / "hota_by_iou.png")
         if len(pairs) > 1:

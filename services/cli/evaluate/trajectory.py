@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
-from services.evaluation.alignment import Alignment
+from services.evaluation.trajectory.alignment import Alignment
 from services.runtime.errors import InputError
 
 
@@ -46,11 +46,11 @@ def trajectory(
     plots: PlotsFlag = None,
 ) -> None:
     """ATE, RPE and KITTI's segment errors of trajectories, each with the share of the frames it speaks of."""
-    from services.evaluation.error_description import describe_error
-    from services.evaluation.evaluated_trajectory import EvaluatedTrajectory, estimate_files, recorded_truth
-    from services.evaluation.trajectory_error import trajectory_error
-    from services.evaluation.trajectory_files import read_trajectory
-    from services.evaluation.trajectory_table import trajectory_rows
+    from services.evaluation.trajectory.description import describe_error
+    from services.evaluation.trajectory.error import trajectory_error
+    from services.evaluation.trajectory.estimates import EvaluatedTrajectory, estimate_files, recorded_truth
+    from services.evaluation.trajectory.files import read_trajectory
+    from services.evaluation.trajectory.table import trajectory_rows
     from services.formats.euroc import read_body_from_sensor
 
     if not (math.isfinite(max_difference) and max_difference >= 0.0):
@@ -77,6 +77,6 @@ def trajectory(
     described = [{"name": item.name, "file": str(files[item.name]), **describe_error(item.error)} for item in evaluated]
     keep_json({"truth": str(truth_file), "estimates": described}, json_file)
     if plots is not None:
-        from services.evaluation.trajectory_plots import plot_all
+        from services.evaluation.trajectory.plots import plot_all
 
         plot_all(evaluated, true, plots_folder(plots))

@@ -25,7 +25,7 @@ from schemas.records import (
     TrueInstances,
     TrueObject,
 )
-from services.evaluation.moving_flag import MovingFlagEvaluator, MovingFlagRules
+from services.evaluation.run.moving_flag import MovingFlagEvaluator, MovingFlagRules
 from services.motion.scene_motion import SceneMotion
 from services.simulator.drive import Drive
 from services.simulator.frame import SimulatedFrame, SimulatedInstance

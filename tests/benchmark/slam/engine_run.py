@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from schemas.codec.rigid import matrix_from_pose
-from services.evaluation.alignment import Alignment, align
+from services.evaluation.trajectory.alignment import Alignment, align
 from services.slam import _engine
 from tests.benchmark.slam.mask_objects import MaskObjects
 

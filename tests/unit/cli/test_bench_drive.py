@@ -17,7 +17,7 @@ from services.cli.bench.kept_runs import KeptRuns
 from services.cli.bench.plan import BenchRequest, PlannedRun, plan_runs, stage_variants
 from services.cli.bench.results import BenchOutput
 from services.cli.bench.schedule import Schedule
-from services.evaluation.bench_file import read_bench
+from services.evaluation.bench.file import read_bench
 from services.runtime.errors import InputError
 
 ATE_M = {"base": 4.0, "moving": 1.0}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.alignment import Similarity
+from services.evaluation.trajectory.alignment import Similarity
 from services.formats.trajectory import Trajectory
 
 

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.alignment import Alignment, align
+from services.evaluation.trajectory.alignment import Alignment, align
 from services.runtime.errors import InputError
 
 

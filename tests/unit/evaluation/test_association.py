@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from services.evaluation.association import match_by_time
+from services.evaluation.trajectory.association import match_by_time
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 

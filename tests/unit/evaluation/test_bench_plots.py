@@ -9,12 +9,12 @@ import cv2
 import numpy as np
 import pytest
 
-from services.evaluation.alignment import Similarity
-from services.evaluation.bench_file import Bench, read_bench, write_bench
-from services.evaluation.bench_paths import TRUTH_NAME, read_paths
-from services.evaluation.bench_plots import plot_axes, plot_errors, plot_trials
-from services.evaluation.bench_runs import BenchRun, RunMeasures
-from services.evaluation.run_folder import TRAJECTORY_NAME
+from services.evaluation.bench.file import Bench, read_bench, write_bench
+from services.evaluation.bench.paths import TRUTH_NAME, read_paths
+from services.evaluation.bench.plots import plot_axes, plot_errors, plot_trials
+from services.evaluation.bench.runs import BenchRun, RunMeasures
+from services.evaluation.run.folder import TRAJECTORY_NAME
+from services.evaluation.trajectory.alignment import Similarity
 from services.formats.trajectory import Trajectory
 from services.formats.tum import write_tum
 from services.runtime.errors import InputError

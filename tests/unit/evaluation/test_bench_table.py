@@ -3,10 +3,10 @@
 
 import pytest
 
-from services.evaluation.bench_ratios import ratio_table
-from services.evaluation.bench_runs import BenchRun, RunMeasures, RunStatus, measures_of
-from services.evaluation.bench_table import BenchTable, summary_table
-from services.evaluation.run_outcome import Report
+from services.evaluation.bench.ratios import ratio_table
+from services.evaluation.bench.runs import BenchRun, RunMeasures, RunStatus, measures_of
+from services.evaluation.bench.table import BenchTable, summary_table
+from services.evaluation.run.outcome import Report
 
 RMSE = {"rmse": 1.0, "mean": 9.0, "median": 9.0, "max": 9.0}
 

@@ -18,11 +18,11 @@ from schemas.records import (
     TruePose,
 )
 from schemas.topics import Topic
-from services.evaluation.density_error import DensityFrame, density_error
-from services.evaluation.density_plots import plot_density_error
-from services.evaluation.density_session import read_densities
-from services.evaluation.density_table import density_rows
-from services.evaluation.true_density import TrueDensity, TrueDensityRules
+from services.evaluation.density.error import DensityFrame, density_error
+from services.evaluation.density.plots import plot_density_error
+from services.evaluation.density.session import read_densities
+from services.evaluation.density.table import density_rows
+from services.evaluation.density.truth import TrueDensity, TrueDensityRules
 from services.runtime.errors import InputError
 from services.runtime.session_file import RecordedMessage
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from services.evaluation.flow_colours import colour_wheel, flow_colours
+from services.evaluation.pictures.flow_colours import colour_wheel, flow_colours
 
 
 def colour_of(u: float, v: float, longest_px: float = 10.0) -> tuple[int, int, int]:

@@ -8,8 +8,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 
 from schemas.records import Image, MotionState, Objects, ObjectTrack
-from services.evaluation.frame_sheet import SeenFrame, plot_frames, tinted
-from services.evaluation.plots import STATE_COLOURS
+from services.evaluation.run.frame_sheet import SeenFrame, plot_frames, tinted
+from services.evaluation.run.plots import STATE_COLOURS
 
 
 def seen(*, colour: bool = False) -> SeenFrame:

@@ -2,7 +2,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.ground_plane import ground_plane
+from services.evaluation.trajectory.ground_plane import ground_plane
 
 
 def _one_pose(rotation: np.ndarray) -> np.ndarray:

@@ -10,9 +10,9 @@ import pytest
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
-from services.evaluation.instance_masks import mask_precision
-from services.evaluation.instance_masks_confusion import class_confusion
-from services.evaluation.instance_masks_found import FoundRules, found_scores
+from services.evaluation.instance_masks.average_precision import mask_precision
+from services.evaluation.instance_masks.confusion import class_confusion
+from services.evaluation.instance_masks.found import FoundRules, found_scores
 from services.formats.coco import (
     CocoAnnotation,
     CocoCategory,

@@ -4,8 +4,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from services.evaluation.instance_masks import mask_precision
-from services.evaluation.instance_masks_input import read_mask_input
+from services.evaluation.instance_masks.average_precision import mask_precision
+from services.evaluation.instance_masks.inputs import read_mask_input
 from services.formats.coco import CocoAnnotation, CocoCategory, CocoDataset, CocoImage, write_coco
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 from services.formats.rle import encode_mask

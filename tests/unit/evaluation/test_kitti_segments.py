@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.alignment import Alignment
-from services.evaluation.trajectory_error import trajectory_error
-from services.evaluation.trajectory_files import read_trajectory
+from services.evaluation.trajectory.alignment import Alignment
+from services.evaluation.trajectory.error import trajectory_error
+from services.evaluation.trajectory.files import read_trajectory
 from services.formats.trajectory import Trajectory
 
 Drive = Callable[..., Trajectory]

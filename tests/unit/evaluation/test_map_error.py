@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from schemas.records import MotionState
-from services.evaluation.ground_plane import FLAT
-from services.evaluation.map_error import MapError, MapErrorRules, map_error
-from services.evaluation.map_plots import plot_label_confusion, plot_map_error
-from services.evaluation.map_table import describe_map_error, map_rows
+from services.evaluation.map.error import MapError, MapErrorRules, map_error
+from services.evaluation.map.plots import plot_label_confusion, plot_map_error
+from services.evaluation.map.table import describe_map_error, map_rows
+from services.evaluation.trajectory.ground_plane import FLAT
 from services.formats.point_cloud import LabelledPoints
 from services.runtime.errors import InputError
 

@@ -4,7 +4,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from schemas.records import MapUpdate, MotionState
-from services.evaluation.map_points import MapPoints
+from services.evaluation.map.points import MapPoints
 
 
 def _keyframes(*rows: tuple[int, int, bool], pose: tuple[float, ...] = (0, 0, 0, 0, 0, 0, 1, 1)) -> MapUpdate:

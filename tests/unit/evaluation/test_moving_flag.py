@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.records import MotionState, Objects, ObjectTrack, TrueInstances, TrueObject
-from services.evaluation.moving_flag import MovingFlagEvaluator, MovingFlagScore, mask_iou
+from services.evaluation.run.moving_flag import MovingFlagEvaluator, MovingFlagScore, mask_iou
 from services.runtime.errors import InputError
 
 HEIGHT, WIDTH = 120, 200

@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from services.evaluation.moving_masks import MaskClass, compare_masks, sum_of
-from services.evaluation.moving_masks_flag import LabelledFlagEvaluator
-from services.evaluation.moving_masks_input import MovingMaskFolder, paired_frames, read_pairs
+from services.evaluation.moving_masks.flag import LabelledFlagEvaluator
+from services.evaluation.moving_masks.inputs import MovingMaskFolder, paired_frames, read_pairs
+from services.evaluation.moving_masks.iou import MaskClass, compare_masks, sum_of
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 from services.runtime.errors import InputError
 

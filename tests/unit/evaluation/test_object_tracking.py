@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from services.evaluation.object_tracking import MatchedFrame, ObjectTrackingEvaluator, TrackingScore
+from services.evaluation.object_tracking.metrics import MatchedFrame, ObjectTrackingEvaluator, TrackingScore
 from services.runtime.errors import ResourceError
 
 pytest.importorskip("trackeval", reason="extra tracking-evaluation is not installed")

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from services.evaluation.object_tracking import MatchedFrame
-from services.evaluation.object_tracking_input import known_categories, read_sequence_pairs
-from services.evaluation.object_tracking_matching import match_sequence
+from services.evaluation.object_tracking.inputs import known_categories, read_sequence_pairs
+from services.evaluation.object_tracking.matching import match_sequence
+from services.evaluation.object_tracking.metrics import MatchedFrame
 from services.formats.kitti_tracking import TrackedBox, read_detections, write_kitti_tracking
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 from services.formats.mots import CAR, IGNORED, PERSON, MotsObject, mots_id, write_mots_png, write_mots_text

@@ -5,10 +5,10 @@ import cv2
 import numpy as np
 import pytest
 
-from services.evaluation.optical_flow_error import FlowError, endpoint_error
-from services.evaluation.optical_flow_input import find_flow_pairs
-from services.evaluation.optical_flow_plots import error_colours, plot_flow_errors, plot_flow_pair
-from services.evaluation.optical_flow_score import FlowScore, flow_score
+from services.evaluation.optical_flow.error import FlowError, endpoint_error
+from services.evaluation.optical_flow.inputs import find_flow_pairs
+from services.evaluation.optical_flow.plots import error_colours, plot_flow_errors, plot_flow_pair
+from services.evaluation.optical_flow.score import FlowScore, flow_score
 from services.formats.kitti_flow import FlowImage, read_kitti_flow, write_kitti_flow
 from services.formats.middlebury_flow import write_middlebury_flow
 from services.runtime.errors import InputError

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.alignment import Alignment, Similarity
-from services.evaluation.pose_alignment import align_poses
+from services.evaluation.trajectory.alignment import Alignment, Similarity
+from services.evaluation.trajectory.pose_alignment import align_poses
 from services.runtime.errors import InputError
 
 

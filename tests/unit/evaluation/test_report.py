@@ -18,17 +18,17 @@ from schemas.records import (
     TrackingState,
     TruePose,
 )
-from services.evaluation.comparison import compare
-from services.evaluation.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
-from services.evaluation.report import (
+from services.evaluation.run.comparison import compare
+from services.evaluation.run.outcome import Report, RunOutcome, ServiceUsage
+from services.evaluation.run.plots import plot_density, plot_map, plot_stage_times, plot_trajectory
+from services.evaluation.run.report import (
     build_report,
     read_report,
     stage_times,
     write_report,
 )
-from services.evaluation.run_outcome import Report, RunOutcome, ServiceUsage
-from services.evaluation.session_log import NO_MAP, SessionLog
-from services.evaluation.summary import summary_rows
+from services.evaluation.run.session_log import NO_MAP, SessionLog
+from services.evaluation.run.summary import summary_rows
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 

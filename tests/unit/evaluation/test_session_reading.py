@@ -8,9 +8,9 @@ from schemas import topics
 from schemas.codec import encode
 from schemas.records import FrameManifest, MotionState, Objects, ObjectTrack, TrueInstances, TrueObject, TruePose
 from schemas.topics import Topic
-from services.evaluation.run_folder import evaluate_run
-from services.evaluation.run_outcome import RunOutcome
-from services.evaluation.session_reading import read_session
+from services.evaluation.run.folder import evaluate_run
+from services.evaluation.run.outcome import RunOutcome
+from services.evaluation.run.session_reading import read_session
 from services.runtime.errors import InputError
 
 mcap_writer = pytest.importorskip("services.recorder.session_writer")

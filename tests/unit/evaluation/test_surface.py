@@ -8,8 +8,8 @@ import pytest
 from schemas import topics
 from schemas.codec import encode
 from schemas.records import CameraCalibration, DepthImage, TrueInstances, TrueObject, TruePose
-from services.evaluation.session_surface import session_surface
-from services.evaluation.surface import BackProjection, SurfaceOptions, thinned
+from services.evaluation.map.session_surface import session_surface
+from services.evaluation.map.surface import BackProjection, SurfaceOptions, thinned
 from services.formats.point_cloud import LabelledPoints
 from services.runtime.errors import InputError
 from services.runtime.session_file import RecordedMessage

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.alignment import Alignment, Similarity
-from services.evaluation.error_statistics import ErrorStatistics
-from services.evaluation.relative_error import path_pairs
-from services.evaluation.trajectory_error import trajectory_error
-from services.evaluation.trajectory_files import read_trajectory
+from services.evaluation.trajectory.alignment import Alignment, Similarity
+from services.evaluation.trajectory.error import trajectory_error
+from services.evaluation.trajectory.files import read_trajectory
+from services.evaluation.trajectory.relative_error import path_pairs
+from services.evaluation.trajectory.statistics import ErrorStatistics
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from services.evaluation.trajectory_files import read_trajectory
+from services.evaluation.trajectory.files import read_trajectory
 from services.formats.kitti_poses import write_kitti_poses
 from services.formats.trajectory import Trajectory
 from services.formats.tum import write_tum

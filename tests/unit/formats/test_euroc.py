@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from services.evaluation.trajectory_files import read_trajectory
+from services.evaluation.trajectory.files import read_trajectory
 from services.formats.euroc import read_body_from_sensor, read_euroc, write_euroc
 from services.formats.trajectory import Trajectory
 from services.formats.tum import write_tum

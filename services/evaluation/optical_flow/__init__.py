@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Flow beside the true one."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories beside the truth: alignment, errors, tables and pictures."""
