@@ -172,5 +172,5 @@ def expect_whole_image(options: DriveOptions, x: Floats) -> None:
     if missing:
         raise InputError(
             f"simulator distortion={options.distortion!r}: expected a {options.lens} lens through which every pixel "
-            f"looks within {MAX_ANGLE_DEG:g} degrees of the axis, {100.0 * missing:.1f} % do not (raise fx_px?)"
+            f"looks within {MAX_ANGLE_DEG:g} degrees of the axis, {100.0 * missing:.2g} % do not (raise fx_px?)"
         )

@@ -10,7 +10,7 @@ from services.runtime.errors import InputError
 from services.simulator.options import DriveOptions
 
 _MISSING, _FROZEN = 101, 102
-_MAX_TIMES = 40_000
+_MAX_TIMES = 20_000
 
 
 class Timeline:
