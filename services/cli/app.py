@@ -5,6 +5,7 @@ import sys
 
 import typer
 
+from services.cli.annotate.app import dataset_app
 from services.cli.bench.command import bench
 from services.cli.config import config_app
 from services.cli.doctor import doctor
@@ -34,6 +35,7 @@ for command in (run, up, down, status, record, replay, export, bench, simulate):
 app.add_typer(config_app, name="config")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(thesis_app, name="thesis")
+app.add_typer(dataset_app, name="dataset")
 app.command()(doctor)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from schemas.records import MotionState
 from services.evaluation.bench.table import NOTHING, BenchTable
@@ -77,6 +78,7 @@ def plot_skews(sequences: Sequence[SequenceBalance], path: Path) -> None:
         axes.axvline(0.0, color="black", linewidth=0.6, linestyle=":")
         axes.set_title(item.name, fontsize=10)
         axes.set_ylabel("frames")
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True))
         axes.legend(fontsize=8)
     rows[-1].set_xlabel("skew (right - left) / (right + left): all left -1, all right 1")
     save_figure(figure, path)
