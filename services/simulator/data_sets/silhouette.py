@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _NEAREST_M = 0.1
-_CANVAS_PX = 128
-"""Longer side of the silhouette as it is drawn, whatever its size in the image: an error of a percent or so."""
+_CANVAS_PX = 384
+"""Longer side of the silhouette as it is drawn, whatever its size in the image: an error of a percent at most."""
 _SHIFT = 6
 """Binary digits behind the point of cv2's coordinates."""
 
