@@ -79,7 +79,7 @@ class LiveCamera:
         self._last_ns = -1
         self._epoch_ns = time.time_ns() - time.monotonic_ns()
         capture = open_capture()
-        pixels = None if capture is None else self._grab(capture)
+        pixels = self._stamped(capture) if capture is not None and capture.grab() else None
         if capture is None or pixels is None:
             if capture is not None:
                 capture.release()
@@ -144,13 +144,12 @@ class LiveCamera:
         tries = 0
         lost_s = time.monotonic()
         while not self._closed.is_set():
-            pixels = None if capture is None else self._grab(capture)
-            if pixels is not None:
+            if capture is not None and capture.grab():
                 if tries:
                     self._log.warning("camera_is_back", camera=self._name, after_s=f"{time.monotonic() - lost_s:.1f}")
                 tries = 0
                 lost_s = time.monotonic()
-                self._offer(pixels)
+                self._offer(self._stamped(capture))
                 continue
             if capture is not None:
                 capture.release()
@@ -165,15 +164,17 @@ class LiveCamera:
         if capture is not None:
             capture.release()
 
-    def _grab(self, capture: Capture) -> npt.NDArray[np.uint8] | None:
-        if not capture.grab():
-            return None
+    def _stamped(self, capture: Capture) -> npt.NDArray[np.uint8] | None:
+        """The frame that was grabbed just now; None for one that came broken."""
         grabbed_ns = self._epoch_ns + time.monotonic_ns()
         self._last_ns = max(grabbed_ns, self._last_ns + 1)
         decoded, pixels = capture.retrieve()
         return np.asarray(pixels, dtype=np.uint8) if decoded and pixels is not None else None
 
-    def _offer(self, pixels: npt.NDArray[np.uint8]) -> None:
+    def _offer(self, pixels: npt.NDArray[np.uint8] | None) -> None:
+        if pixels is None:
+            self._log.warning_limited("frame_is_broken", camera=self._name)
+            return
         with self._changed:
             self._newest = Image(self._last_ns, pixels)
             self._changed.notify_all()

@@ -95,7 +95,10 @@ class MessageSource(IndexedSource):
             places, depth_places = _with_depth(log, topics.image, topics.depth, places, notes)
         images = LoggedImages(log, topics.image, places)
         times_ns = [place.stamp_ns for place in places]
-        poses = None if topics.truth is None else _truth(log, topics.image, topics.truth, times_ns, notes)
+        poses = None
+        if topics.truth is not None:
+            camera = log.image(topics.image, places[0]).frame_id
+            poses = _truth(log, camera, topics.truth, times_ns, notes)
         super().__init__(
             f"{log.name} {topics.image}",
             times_ns,
@@ -159,10 +162,9 @@ def _calibration(
     return model.for_images(size, Path(f"{log.name} {topics.image}")).record(0)
 
 
-def _truth(log: MessageLog, image: str, truth: str, times_ns: list[int], notes: list[str]) -> list[Pose | None]:
+def _truth(log: MessageLog, camera: str, truth: str, times_ns: list[int], notes: list[str]) -> list[Pose | None]:
     places = _increasing(log, truth, notes)
     messages = [log.pose(truth, place) for place in places]
-    camera = log.image(image, log.index(image)[0]).frame_id
     body = messages[0].child_frame_id
     body_from_camera = np.eye(4)
     if body != camera:

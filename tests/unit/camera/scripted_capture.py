@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 SIZE = (64, 48)
+BROKEN = 255
 
 
 class ScriptedCapture:
@@ -21,6 +22,7 @@ class ScriptedCapture:
         self.released = False
 
     def show(self, value: int | None, size: tuple[int, int] = SIZE) -> None:
+        """A frame all of `value`; one that cannot be decoded for BROKEN."""
         with self._changed:
             self._frames.append(None if value is None else np.full((*size[::-1], 3), value, np.uint8))
             self._changed.notify_all()
@@ -40,7 +42,9 @@ class ScriptedCapture:
             return self._grabbed is not None
 
     def retrieve(self) -> tuple[bool, Any]:
-        return self._grabbed is not None, self._grabbed
+        assert self._grabbed is not None
+        broken = (self._grabbed == BROKEN).all()
+        return (False, None) if broken else (True, self._grabbed)
 
     def get(self, property_id: int) -> float:
         return 25.0 if property_id == cv2.CAP_PROP_FPS else 0.0

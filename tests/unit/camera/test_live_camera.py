@@ -16,7 +16,7 @@ from services.camera.sources.live_camera import LiveCamera
 from services.camera.sources.opencv_camera import assumed_calibration, open_live_camera
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
-from tests.unit.camera.scripted_capture import SIZE, Cameras, ScriptedCapture
+from tests.unit.camera.scripted_capture import BROKEN, SIZE, Cameras, ScriptedCapture
 
 
 def _live(cameras: Cameras) -> LiveCamera:
@@ -71,6 +71,19 @@ def test_a_camera_that_goes_away_comes_back(caplog: pytest.LogCaptureFixture) ->
     after.release()
     camera.close()
     assert [record.getMessage() for record in caplog.records][:5] == ["camera_is_lost"] * 4 + ["camera_is_back"]
+
+
+def test_a_broken_frame_is_left_out_and_the_camera_kept() -> None:
+    capture = ScriptedCapture()
+    capture.show(1)
+    cameras = Cameras(capture)
+    camera = _live(cameras)
+    capture.show(BROKEN)
+    capture.show(3)
+    assert _value(camera.frame(0)) == 3
+    assert cameras.opened == 1
+    capture.release()
+    camera.close()
 
 
 def test_closing_frees_whoever_waits_for_a_camera_that_is_gone() -> None:
