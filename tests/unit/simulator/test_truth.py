@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions
+from tests.benchmark.simulator.orb_features import WORLDS, orb_behaviour
 from tests.benchmark.simulator.warp_errors import grey, pixel_grid, place_elsewhere, stereo_error, warp_errors
 
 STRONG_GRADIENT = 10.0
@@ -110,3 +111,11 @@ def test_road_lies_at_the_cameras_height(street: Drive) -> None:
     road[150:190, 220:340] = True
     assert not frame.labels[road].any()
     assert np.abs(frame.depth_m[road] + height / down[road]).max() < 0.1
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_orb_finds_and_matches_features_as_on_real_images(world: str) -> None:
+    drive = Drive(DriveOptions(width=1242, height=375, seed=5, **WORLDS[world]))
+    found = [orb_behaviour(drive, index) for index in (30, 160)]
+    assert min(behaviour.features for behaviour in found) >= 1500
+    assert min(behaviour.right for behaviour in found) >= 0.6
