@@ -70,8 +70,7 @@ def flats_mesh(rng: np.random.Generator, size_m: Size, storeys: int, *, wall: Wa
         x = -0.5 * size_m[0] + (bay + 0.5) * BAY_M
         pieces += [_balcony(x, PLINTH_M + storey * STOREY_M, railing, texture) for storey in range(1, storeys)]
     x = float(rng.uniform(-0.3, 0.3)) * size_m[0]
-    pieces.append(box((3.4, 1.6, 0.2), (x, 0.8, 2.9), texture["plain_grey_panels"], 3.0))
-    pieces += [box((0.16, 0.16, 3.4), (x + dx, 1.45, 1.2), texture["metal"], 1.0) for dx in (-1.5, 1.5)]
+    pieces.append(box((3.4, 1.6, 0.2), (x, 0.8, 2.95), texture["plain_grey_panels"], 3.0))
     return merged(pieces)
 
 
@@ -137,7 +136,7 @@ def _moved(x: float, y: float) -> np.ndarray[tuple[int, int], np.dtype[np.float6
 
 def _step(rng: np.random.Generator, size_m: Size, texture: Textures) -> Mesh:
     x = float(rng.uniform(-0.3, 0.3)) * size_m[0]
-    return box((1.6, 1.2, 0.5), (x, 0.5, 0.06), texture["plain_sandstone"], 3.0, (0.8, 0.8, 0.8))
+    return box((1.6, 0.7, 0.6), (x, 0.0, 0.0), texture["plain_sandstone"], 3.0, (0.8, 0.8, 0.8))
 
 
 def _bay(x: float, wall: Wall, roof: int, texture: Textures) -> Mesh:

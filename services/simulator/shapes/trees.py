@@ -41,7 +41,7 @@ def broad_tree(rng: np.random.Generator, leaves: str, texture: Textures) -> Mesh
     """Round crown on a strong trunk, 7 to 10 m: lime, maple."""
     height = float(rng.uniform(7.0, 10.0))
     spread = (0.29 * height, 0.3 * height)
-    crown = _crown(rng, 0.66 * height, spread, 13, texture[leaves])
+    crown = _crown(rng, 0.7 * height, spread, 13, texture[leaves])
     return merged([_trunk(0.62 * height, 0.2, texture["bark"]), *crown])
 
 
@@ -57,8 +57,8 @@ def poplar_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
     height = float(rng.uniform(11.0, 15.0))
     pieces = [_trunk(0.6 * height, 0.2, texture["bark"])]
     for k in range(7):
-        z = (0.22 + 0.11 * k) * height
-        wide = (1.0 - 0.5 * abs(k - 2.0) / 4.0) * 1.25
+        z = (0.34 + 0.093 * k) * height
+        wide = (1.0 - 0.5 * abs(k - 2.0) / 4.0) * 1.2
         size = [wide, wide, 0.13 * height]
         at = (*rng.uniform(-0.2, 0.2, 2), z)
         pieces.append(blob(at, size, texture["leaves_dark"], rng, sides=8, repeat=(3.0, 2.0), tint=_grey(rng)))
@@ -86,7 +86,7 @@ def young_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
     height = float(rng.uniform(3.8, 5.0))
     stakes = [
         tube((dx, 0, _ROOT_M), (dx, 0, 1.7), (0.05, 0.05), texture["boards"], 5, repeat=(1.0, 3.0))
-        for dx in (-0.35, 0.35)
+        for dx in (-0.28, 0.28)
     ]
     crown = _crown(rng, 0.72 * height, (0.95, 1.1), 6, texture["leaves_light"])
     return merged([_trunk(0.7 * height, 0.06, texture["bark"]), *stakes, *crown])

@@ -40,7 +40,7 @@ class LoopStreet:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """line: closed centre line, s = 0 on the longest street with heading 0. streets: in order of s."""
+    """line: closed centre line, s = 0 on the longest straight street, with heading 0. streets: in order of s."""
 
     line: SampledLine
     streets: tuple[LoopStreet, ...]
@@ -84,9 +84,9 @@ def _rounded(outline: Floats, radii: Floats, bends: Floats, loop_m: float) -> Lo
 
 
 def _assembled(turns: Floats, corners: list[Floats], length: Floats, swing: Floats, loop_m: float) -> Loop:
-    """Headings of streets and corners one after the other, sampled, with s = 0 on the longest street."""
+    """Headings of streets and corners one after the other, sampled, with s = 0 on the longest straight street."""
     count = len(length)
-    first = int(np.argmax(length))
+    first = int(np.argmax(np.where(swing == 0.0, length, 0.0)))
     order = [(first + k) % count for k in range(count)]
     begin = -_START_SHARE * float(length[first])
     knots: list[Floats] = []

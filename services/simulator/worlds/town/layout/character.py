@@ -31,7 +31,7 @@ MIXES = {
 _PANELS = tuple(style.name for style in STYLES if style.wall == "panels")
 _OTHERS = tuple(style.name for style in STYLES if style.wall != "panels")
 _LOW = tuple(style.name for style in STYLES if style.wall in ("timber", "planks"))
-_TREES = ("lime", "maple", "beech", "oak", "birch", "poplar", "fir", "young")
+_TREES = ("lime", "maple", "beech", "oak", "birch", "poplar", "young")
 _FENCES = ("hedge", "wall", "boards", "pickets", "rails")
 
 
@@ -39,7 +39,7 @@ _FENCES = ("hedge", "wall", "boards", "pickets", "rails")
 class Character:
     """How one side of a street looks.
 
-    mix: key of `MIXES`. styles: walls, the first ones most often; panels: those of blocks of flats, often. tree_m, lamp_m:
+    mix: key of `MIXES`. styles: walls, the first ones most often; panels: often of blocks of flats. tree_m, lamp_m:
     spacing along the street. poles: wires on wooden poles instead of lamps.
     """
 

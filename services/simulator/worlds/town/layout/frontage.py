@@ -144,12 +144,12 @@ class HouseRow:
             for _ in range(int(rng.integers(1, 4))):
                 leaves = str(rng.choice(["leaves_olive", "leaves_dark", "leaves_light"]))
                 at = np.eye(4)
-                at[:2, 3] = rng.uniform(-0.45, 0.45) * lot.width_m, rng.uniform(1.0, setback_m - 0.5)
+                at[:2, 3] = rng.uniform(-0.45, 0.45) * lot.width_m, rng.uniform(0.7, max(0.8, setback_m - 1.6))
                 pieces.append(trees.shrub(rng, leaves, texture).transformed(at))
-        if setback_m > 1.9 and lot.kind != "flats":
+        if setback_m > 2.2 and lot.kind != "flats":
             length = 0.5 * lot.width_m - 0.7
             for x in (-0.25 * lot.width_m - 0.35, 0.25 * lot.width_m + 0.35):
                 at = np.eye(4)
-                at[:2, 3] = x, setback_m - 0.4
+                at[:2, 3] = x, setback_m - 1.05
                 pieces.append(street_things.garden_fence(character.fence, length, texture).transformed(at))
         return pieces

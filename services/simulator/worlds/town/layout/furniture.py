@@ -23,8 +23,8 @@ Floats = NDArray[np.float64]
 
 _VARIANTS = 3
 _KERB_SIDE_M = 0.6
-"""Trees and lamps stand this far behind the kerb, small things this far before the pavement's back edge."""
-_BACK_SIDE_M = 0.35
+"""Trees and lamps stand this far behind the kerb; what stands at the back is behind the pavement, clear of people."""
+_BACK_SIDE_M = 0.4
 
 
 class Furniture:
@@ -101,7 +101,7 @@ class Furniture:
         character = frontage.character
         pieces = []
         for s in self._every(frontage, character.tree_m, 1.2):
-            pose = self._pose(frontage, s, 0.7)
+            pose = self._pose(frontage, s, _KERB_SIDE_M)
             kind = character.trees[int(self._rng.random() < 0.25)]
             if self._clear(pose, 0.6):
                 pieces.append(self.tree(kind, pose))
@@ -113,8 +113,8 @@ class Furniture:
         for s in self._every(frontage, 34.0, 9.0):
             number = int(self._rng.integers(0, SIGN_COUNT + TOWN_SIGNS))
             name = f"sign_{number}" if number < SIGN_COUNT else f"town_sign_{number - SIGN_COUNT}"
-            pose = self._pose(frontage, s, 0.45)
-            if self._clear(pose):
+            pose = self._pose(frontage, s, 0.5)
+            if self._clear(pose, 0.45):
                 pieces.append(street_things.board_on_post(name, self._texture).transformed(pose))
         return pieces
 
@@ -126,7 +126,7 @@ class Furniture:
         s = float(rng.uniform(frontage.first_m + 15.0, frontage.last_m - 15.0))
         pose = self._pose(frontage, s, frontage.back_m - frontage.kerb_m + 0.2)
         beside = self._pose(frontage, s, frontage.back_m - frontage.kerb_m + 1.3)
-        if not self._clear(pose, 2.0) or not self._site.take(beside, (5.0, 1.4)):
+        if not self._clear(pose, 3.5) or not self._site.take(beside, (5.0, 1.4)):
             return []
         return [street_things.bus_stop(self._poster(), self._texture).transformed(pose)]
 
@@ -140,13 +140,13 @@ class Furniture:
         rng, texture, pieces = self._rng, self._texture, []
         back = frontage.back_m - frontage.kerb_m
         for s in self._every(frontage, 11.0, 4.0):
-            choice = rng.random()
-            at_back = self._pose(frontage, s, back - _BACK_SIDE_M, float(rng.uniform(-0.08, 0.08)))
-            at_kerb = self._pose(frontage, s, _KERB_SIDE_M - 0.1)
+            choice, reach_m = rng.random(), 0.6
+            at_back = self._pose(frontage, s, back + _BACK_SIDE_M, float(rng.uniform(-0.08, 0.08)))
+            at_kerb = self._pose(frontage, s, _KERB_SIDE_M + 0.05)
             if choice < 0.3:
                 thing, pose = bin_mesh(texture), self._pose(frontage, s, back + 0.45)
             elif choice < 0.42:
-                thing, pose = street_things.bench(texture), at_back
+                thing, pose, reach_m = street_things.bench(texture), at_back, 1.2
             elif choice < 0.54:
                 thing, pose = street_things.litter_bin(texture), at_kerb
             elif choice < 0.62:
@@ -161,9 +161,13 @@ class Furniture:
                 pose = self._pose(frontage, s, back + 1.0, float(rng.uniform(0.0, 6.0)))
             elif choice < 0.9:
                 thing, pose = street_things.billboard(self._poster(), texture), self._pose(frontage, s, back + 1.0)
+                reach_m = 2.5
             else:
                 continue
-            if self._clear(pose, 0.3) and (self._behind(pose) < 0.0 or self._site.take(pose, (2.0, 1.2))):
+            room = (2.0 * reach_m, 0.9)
+            if self._clear(pose, reach_m) and (
+                self._behind(pose) < 0.0 or self._site.take(pose, room, centre_y_m=-0.25)
+            ):
                 pieces.append(thing.transformed(pose))
         return pieces
 

@@ -28,6 +28,8 @@ KERB_TOP_M = 0.18
 """Width of the kerb stone."""
 _ARC = 8
 _LAWN_M = 8.0
+_UNDER_M = 0.4
+"""How far lawns reach below pavements, so that no gap opens."""
 _PAVEMENT_M, _SIDE_PAVEMENT_M = PAVEMENT_EDGE_M - KERB_M, SIDE_PAVEMENT_EDGE_M - SIDE_KERB_M
 
 
@@ -64,7 +66,10 @@ class MouthShape:
     def _place(self, a: Floats, b: Floats, hand: float) -> Floats:
         """World (x, y) of corner coordinates: square to the arm beside it, square to the loop where that goes on."""
         lateral = hand * (SIDE_KERB_M + b)
-        by_arm = self._arm.point(self.kerb_at(lateral) + a, lateral)
+        # Where the arm's own kerb begins, all its edges begin at the same distance.
+        square = np.clip(a / CORNER_RADIUS_M, 0.0, 1.0)
+        kerb = (1.0 - square) * self.kerb_at(lateral) + square * self.kerb_at(hand * SIDE_KERB_M)
+        by_arm = self._arm.point(kerb + a, lateral)
         s = np.interp(lateral, self._lateral, self._along)
         by_loop = self._loop.point(s, self._mouth.side * (KERB_M + a))
         give = np.clip((a - _PAVEMENT_M) / (CORNER_RADIUS_M - _PAVEMENT_M), 0.0, 1.0)
@@ -110,8 +115,8 @@ class MouthShape:
                 drape.sheet(inner + t * (back - inner), top, texture["paving"], tile_m=4.0, tint=(0.92, 0.92, 0.92))
             )
             lawn = np.meshgrid(
-                np.linspace(_PAVEMENT_M, _PAVEMENT_M + _LAWN_M, 5),
-                np.linspace(_SIDE_PAVEMENT_M, _SIDE_PAVEMENT_M + _LAWN_M, 5),
+                np.linspace(_PAVEMENT_M - _UNDER_M, _PAVEMENT_M + _LAWN_M, 5),
+                np.linspace(_SIDE_PAVEMENT_M - _UNDER_M, _SIDE_PAVEMENT_M + _LAWN_M, 5),
             )
-            pieces.append(drape.sheet(self._place(lawn[0], lawn[1], hand), top - 0.004, texture["grass"], tile_m=5.0))
+            pieces.append(drape.sheet(self._place(lawn[0], lawn[1], hand), top - 0.012, texture["grass"], tile_m=5.0))
         return merged(pieces)

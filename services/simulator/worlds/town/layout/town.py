@@ -36,7 +36,7 @@ def town_mesh(survey: TownSurvey, seed: int, max_slope: float, texture: Mapping[
     """Everything that stands; it follows from the survey and the seed."""
     rng = np.random.default_rng([seed, 24])
     drape = Drape(survey.ground.hills, min(_LARGEST_STEP_M, sampling_m(max_slope)))
-    loop_fronts, side_fronts = _frontages(survey, rng)
+    loop_fronts, side_fronts = frontages(survey, rng)
     site = Site(survey.ground.distances, survey.ground.hills)
     pieces = [
         streets_mesh(survey, drape, loop_fronts, texture),
@@ -58,7 +58,7 @@ def town_mesh(survey: TownSurvey, seed: int, max_slope: float, texture: Mapping[
     return merged(pieces)
 
 
-def _frontages(survey: TownSurvey, rng: np.random.Generator) -> tuple[list[Frontage], list[Frontage]]:
+def frontages(survey: TownSurvey, rng: np.random.Generator) -> tuple[list[Frontage], list[Frontage]]:
     """Both sides of every street of the loop, corner to corner, and of every side street."""
     loop = survey.loop
     characters = draw_characters(rng, len(loop.streets) + len(survey.streets))
@@ -133,6 +133,7 @@ def _woods(survey: TownSurvey, site: Site, furniture: Furniture, rng: np.random.
             n = float(rng.choice([-1.0, 1.0]) * rng.uniform(*_WOOD_M))
             pose = site.pose(line, float(s + rng.uniform(-3.0, 3.0)), n)
             kind = str(rng.choice(kinds))
-            if site.take(pose, (4.0, 4.0)):
+            room_m = 6.0 if kind == "fir" else 4.5
+            if site.take(pose, (room_m, room_m)):
                 pieces.append(furniture.tree(kind, pose))
     return pieces
