@@ -4,22 +4,31 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 
 from services.cli.simulate_progress import FrameProgress
 from services.evaluation.pictures.contact_sheet import SheetRow, draw_contact_sheet, write_sheet
 from services.runtime.errors import InputError
 from services.simulator.drive import Drive
+from services.simulator.frame import SimulatedFrame
 from services.simulator.options import DriveOptions
 
 SUFFIXES = (".jpg", ".jpeg")
 _MAX_ROWS = 40
 _FIRST, _LAST = 0.25, 0.95
 """Share of the drive between which the frames are taken: the street begins without traffic."""
+_SPREAD = 0.02
+"""Share of the drive between the frames of which one is chosen."""
+_BIG = 0.0005
+"""Share of the image from which an instance counts."""
+_STEP_M = 0.1
 
 
 def draw_sheet(path: Path, options: DriveOptions, seeds: tuple[int, ...], console: Console) -> None:
     """Draw a frame of each seed's drive, later and later ones, with depth, instances, moving flags and flow.
+
+    Of five frames near its place in the drive, the one that shows most is taken.
 
     Raises:
         InputError: no JPEG's name, more seeds than a sheet holds, a drive of one frame, which has no flow.
@@ -43,7 +52,19 @@ def draw_sheet(path: Path, options: DriveOptions, seeds: tuple[int, ...], consol
 
 
 def _row(drive: Drive, index: int) -> SheetRow:
-    frame, flow = drive.render(index), drive.flow(index)
+    """The frame that shows most near `index`."""
+    last = drive.frame_count - 2
+    spread = max(1, round(_SPREAD * last))
+    near = sorted({min(max(index + offset * spread, 0), last) for offset in range(-2, 3)})
+    frame = max((drive.render(number) for number in near), key=lambda frame: _shown(drive, frame))
+    flow = drive.flow(frame.index)
     moving = frozenset(item.instance_id for item in frame.instances if item.moving)
-    name = f"seed\n{drive.options.seed}\nframe\n{index}"
+    name = f"seed\n{drive.options.seed}\nframe\n{frame.index}"
     return SheetRow(name, frame.image, frame.depth_m, frame.labels, moving, flow.flow_px, flow.visible)
+
+
+def _shown(drive: Drive, frame: SimulatedFrame) -> tuple[bool, int, int]:
+    """How much a frame shows: the camera moving, kinds of things that move or stand, how many; not the far ones."""
+    way = drive.world_from_camera(frame.index + 1)[:3, 3] - frame.world_from_camera[:3, 3]
+    big = [item for item in frame.instances if item.visible_px >= _BIG * frame.labels.size]
+    return float(np.linalg.norm(way)) > _STEP_M, len({(item.category, item.moving) for item in big}), len(big)

@@ -147,6 +147,13 @@ def test_draws_a_sheet(simulate: Simulate, tmp_path: Path) -> None:
     assert len(np.unique(rows // 32, axis=0)) > 30
 
 
+def test_explains_itself(simulate: Simulate) -> None:
+    ended = simulate("--help")
+    assert ended.code == 0
+    assert "Usage: kinemap simulate" in ended.out
+    assert "--formats" in ended.out
+
+
 def test_seeds_and_sizes_are_read_as_meant() -> None:
     assert parse_seeds("7") == (7,)
     assert parse_seeds("1, 2,5-8") == (1, 2, 5, 6, 7, 8)
