@@ -124,8 +124,8 @@ def bus_stop(poster: str, texture: Textures) -> Mesh:
             [[[-2, -1.05, 2.2], [2, -1.05, 2.2], [2, -1.05, 0.4], [-2, -1.05, 0.4]]], np.array(unit) * [2.0, 1.0], glass
         )
     )
-    for x in (1.97, 2.05):
-        face = [[x, -1.0, 2.1], [x, 0.35, 2.1], [x, 0.35, 0.4], [x, -1.0, 0.4]]
+    for x, left, right in ((1.97, 0.35, -1.0), (2.05, -1.0, 0.35)):
+        face = [[x, left, 2.1], [x, right, 2.1], [x, right, 0.4], [x, left, 0.4]]
         pieces.append(quads([face], unit, texture[poster]))
     sign = board_on_post("timetable", texture, size_m=0.6, low_m=1.9).transformed(_at(-3.0, 0.3))
     return merged([*pieces, sign])

@@ -87,7 +87,9 @@ def shop_mesh(
     board = texture[f"board_{int(rng.integers(0, 8))}"]
     x, z = float(rng.choice([-0.35, 0.35])) * size_m[0], PLINTH_M + SHOP_M[1] + 0.5
     for side in (-0.04, 0.04):
-        face = [[x + side, dy, z + dz] for dy, dz in ((0.2, 0.7), (1.4, 0.7), (1.4, 0.0), (0.2, 0.0))]
+        # It reads from left to right on both sides.
+        left, right = (0.2, 1.4) if side > 0 else (1.4, 0.2)
+        face = [[x + side, dy, z + dz] for dy, dz in ((left, 0.7), (right, 0.7), (right, 0.0), (left, 0.0))]
         pieces.append(quads([face], stretch(), board))
     pieces.append(box((0.05, 1.4, 0.05), (x, 0.7, z + 0.73), texture["iron"]))
     if rng.random() < 0.7:
