@@ -17,6 +17,7 @@ from schemas.records.objects import Objects
 from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
 from services.runtime.errors import InputError
 from services.slam import _engine
+from services.slam.depth_scale import DepthScale
 
 Stage = Literal["base", "dynamic", "moving"]
 
@@ -49,6 +50,8 @@ class SlamEngine:
         """InputError names the number of the calibration or the setting that cannot be used."""
         self._settings = settings or EngineSettings()
         self._metric_scale = False
+        self._depth_scale = DepthScale(calibration, self._settings.map_from_first_camera[:3])
+        self._measured: tuple[npt.NDArray[np.float64], DepthImage] | None = None
         with _input_errors():
             self._engine = _engine.Engine(_camera_model(calibration), _engine_options(self._settings))
 
@@ -65,7 +68,8 @@ class SlamEngine:
         """Track and map the frame begun last.
 
         Masks that are not fresh keep every object out of tracking, whatever its state (in the stages that know
-        objects). InputError for arrays of another size; RuntimeError when no frame was begun.
+        objects). A map whose first frames saw too little depth becomes metric by a later keyframe's (`DepthScale`).
+        InputError for arrays of another size; RuntimeError when no frame was begun.
         """
         rows = () if objects is None else objects.objects
         with _input_errors():
@@ -77,8 +81,12 @@ class SlamEngine:
                 masks is MaskSource.FRESH,
                 None if depth is None else np.ascontiguousarray(depth.depth_m, np.float32),
             )
+        in_units = self._tracked_frame(result, masks)
+        self._measured = None
+        if depth is not None and in_units.keyframe_inserted and in_units.map_from_camera is not None:
+            self._measured = (in_units.map_from_camera, depth)
         self._metric_scale = result.metric_scale
-        return self._tracked_frame(result, masks)
+        return in_units if result.metric_scale else self._depth_scale.frame(in_units)
 
     def flush(self) -> None:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
@@ -91,12 +99,19 @@ class SlamEngine:
 
     def take_map_update(self, timestamp_ns: int) -> MapUpdate:
         """Everything of the map that changed since the last call, under the time of the newest frame."""
-        return MapUpdate(
+        in_units = MapUpdate(
             timestamp_ns=timestamp_ns,
             map_id=self._settings.map_id,
             metric_scale=self._metric_scale,
             **self._engine.take_map_update(),
         )
+        if self._metric_scale:
+            return in_units
+        update = self._depth_scale.update(in_units)
+        if self._measured is not None:
+            self._depth_scale.look(in_units, *self._measured)
+            self._measured = None
+        return update
 
     def _tracked_frame(self, result: _engine.TrackingResult, masks: MaskSource) -> TrackedFrame:
         state = TrackingState(result.state)
