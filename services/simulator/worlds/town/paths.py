@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.simulator.actors.motion import Path
 from services.simulator.worlds.town.plan import Ground, TownPlan
 
 Floats = NDArray[np.float64]
@@ -34,9 +36,8 @@ class Sway:
 class LoopPath:
     """Along the loop from `s_m` in `direction` (+1 or -1) at offset `n_m`, with shifts on the way.
 
-    The way gone is counted along the centre line, so that all lanes share one coordinate. present_m: from where to
-    where on its way the actor is there. leeway: (K,) further offset over one round, at equal steps of s. sway: nobody
-    drives as on rails.
+    The way gone is counted along the centre line, so that all lanes share one coordinate. sway: nobody drives as on
+    rails.
     """
 
     def __init__(
@@ -47,31 +48,25 @@ class LoopPath:
         n_m: float,
         *,
         shifts: tuple[Shift, ...] = (),
-        present_m: tuple[float, float] = (-np.inf, np.inf),
-        leeway: Floats | None = None,
         sway: Sway | None = None,
     ) -> None:
         self._plan, self._direction, self._s_m, self._n_m = plan, direction, s_m, n_m
         self._shifts = np.array([(shift.begin_m, shift.length_m, shift.by_m) for shift in shifts]).reshape(-1, 3)
-        self._present_m = present_m
-        self._leeway, self._sway = leeway, sway
+        self._sway = sway
 
     def point(self, distance_m: Floats | float) -> Floats:
         """World position on the ground, (..., 3)."""
         gone = np.asarray(distance_m, np.float64)
         s = self._s_m + self._direction * gone
         n = self._n_m + self._shifted(gone)
-        if self._leeway is not None:
-            n = n + _round_table(self._leeway, s / self._plan.loop.length_m)
         if self._sway is not None:
             n = n + self._sway.amplitude_m * np.sin(gone * (2.0 * np.pi / self._sway.wave_m) + self._sway.phase_rad)
         plane = self._plan.loop.point(s, n)
         return np.concatenate([plane, self._plan.ground.height_m(plane)[..., None]], axis=-1)
 
     def inside(self, distance_m: Floats | float) -> NDArray[np.bool_]:
-        """Whether the actor is there after this way."""
-        gone = np.asarray(distance_m, np.float64)
-        return (gone >= self._present_m[0]) & (gone < self._present_m[1])
+        """Everywhere."""
+        return np.ones(np.shape(distance_m), bool)
 
     def _shifted(self, gone: Floats) -> Floats:
         if not len(self._shifts):
@@ -117,6 +112,31 @@ class PointsPath:
         return np.asarray(self._closed | ((at >= 0.0) & (at < len(self._xy) - 1)))
 
 
+class ChainPath:
+    """One path after another; begins_m: (K,) way gone where each begins, the first at 0; each is asked for its own way.
+
+    Nobody is present before the begin, nor from `end_m` on.
+    """
+
+    def __init__(self, paths: Sequence[Path], begins_m: Sequence[float], end_m: float) -> None:
+        self._paths, self._begins_m, self._end_m = tuple(paths), np.asarray(begins_m, np.float64), end_m
+
+    def point(self, distance_m: Floats | float) -> Floats:
+        """World position on the ground, (..., 3)."""
+        gone = np.asarray(distance_m, np.float64)
+        number = np.maximum(np.searchsorted(self._begins_m, gone, side="right") - 1, 0)
+        points = np.empty((*gone.shape, 3))
+        for k in np.unique(number):
+            mine = number == k
+            points[mine] = self._paths[k].point(gone[mine] - self._begins_m[k])
+        return points
+
+    def inside(self, distance_m: Floats | float) -> NDArray[np.bool_]:
+        """Whether the actor is there after this way."""
+        gone = np.asarray(distance_m, np.float64)
+        return np.asarray((gone >= 0.0) & (gone < self._end_m))
+
+
 @dataclass(frozen=True, slots=True)
 class StraightPath:
     """From a world point (2,) on in one direction; what stands there stands on the ground."""
@@ -142,10 +162,3 @@ def equally_spaced(points: Floats, step_m: float) -> tuple[Floats, float]:
     count = max(2, int(np.ceil(way[-1] / step_m)) + 1)
     at = np.linspace(0.0, way[-1], count)
     return np.column_stack([np.interp(at, way, points[:, axis]) for axis in (0, 1)]), float(at[1])
-
-
-def _round_table(table: Floats, turns: Floats) -> Floats:
-    """Value at parts of a round, linear between the entries of a table that repeats."""
-    at = turns % 1.0 * len(table)
-    low = at.astype(np.intp) % len(table)
-    return np.asarray(table[low] + (at - np.floor(at)) * (table[(low + 1) % len(table)] - table[low]))

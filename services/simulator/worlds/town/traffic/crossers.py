@@ -29,12 +29,13 @@ _STEP_M = 0.05
 class Crosser:
     """Somebody at zebra number `zebra`, at place `place` of it; left: whether the first wait is on the loop's left.
 
-    ready_s: from when on he wants to cross. starts_s: when he set off, each time.
+    look: seed of clothes and build. ready_s: from when on he wants to cross. starts_s: when he set off, each time.
     """
 
     zebra: int
     place: int
     left: bool
+    look: int
     pace_m_s: float
     ready_s: float
     rest_s: Floats
@@ -81,5 +82,6 @@ def draw_crossers(rng: np.random.Generator, zebras: int, traffic: float) -> list
             rest = rng.uniform(12.0, 34.0, 16) * (1.3 - 0.3 * traffic)
             ready = first + float(rng.uniform(0.0, 4.0))
             pace = float(rng.uniform(1.5, 2.0))
-            crossers.append(Crosser(zebra, int(place), bool(rng.random() < 0.5), pace, ready, rest))
+            left, look = bool(rng.random() < 0.5), int(rng.integers(0, 2**31))
+            crossers.append(Crosser(zebra, int(place), left, look, pace, ready, rest))
     return crossers

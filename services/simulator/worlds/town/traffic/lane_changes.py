@@ -37,8 +37,8 @@ class LaneChanges:
     def step(self, number: int, order: Order, acceleration: Floats) -> None:
         """Begin and end changes. acceleration: (N,) of each vehicle behind its leaders, stop lines apart."""
         state = self._state
-        gone = state.x_m - state.enter_x_m
-        ended = (state.beside >= 0) & (gone > state.shift_ends_m)
+        gone = state.gone_m
+        ended = (state.beside >= 0) & (gone > state.beside_ends_m)
         state.beside[ended] = -1
         rows = self._candidates(number, gone)
         for track in range(LOOP_TRACKS):
@@ -48,8 +48,8 @@ class LaneChanges:
     def _candidates(self, number: int, gone: Floats) -> Ints:
         state = self._state
         able = state.active & state.overtakes & (state.beside < 0) & (state.track < LOOP_TRACKS)
-        able &= (gone > state.shift_ends_m + _REST_M) & (state.speed_m_s > _LEAST_SPEED_M_S)
-        able &= state.gate_m > _GATE_M
+        able &= (gone > state.beside_ends_m + _REST_M) & (state.speed_m_s > _LEAST_SPEED_M_S)
+        able &= (state.gate_m > _GATE_M) & np.isinf(state.leave_x_m)
         able[np.arange(len(able)) % _EVERY != number % _EVERY] = False
         rows = np.flatnonzero(able)
         for ahead_m in (0.0, 12.0, 24.0):
@@ -105,5 +105,5 @@ class LaneChanges:
         outwards = 1.0 if track % 2 else -1.0
         right = -1.0 if track < 2 else 1.0
         state.shifts[row].append(Shift(gone_m, length, outwards * right * LANE_WIDTH_M))
-        state.beside[row], state.track[row] = state.track[row], track
-        state.shift_ends_m[row] = gone_m + length
+        state.take_room(row, int(state.track[row]), 0.0, gone_m + length)
+        state.track[row] = track

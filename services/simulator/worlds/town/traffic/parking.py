@@ -122,8 +122,8 @@ class PullOut:
         self._wants = self._wants or 6.0 < ahead < self._trigger_m
         if not self._wants:
             return
-        lane = rows[(state.track[rows] == self._track) | (state.beside[rows] == self._track)]
-        offset = (state.x_m[lane] - self._x_m + 0.5 * length) % length - 0.5 * length
+        lane, x_m = state.on_track(self._track)
+        offset = (x_m - self._x_m + 0.5 * length) % length - 0.5 * length
         reach = 0.5 * (state.length_m[lane] + self.parked.vehicle.length_m)
         before = (offset > -reach) & (offset < reach + _FREE_AHEAD_M)
         follows = (offset <= 0.0) & (-offset < reach + _FREE_BEHIND_M + _FREE_BEHIND_S * state.speed_m_s[lane])

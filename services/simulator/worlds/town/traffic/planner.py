@@ -11,29 +11,34 @@ from numpy.typing import NDArray
 from services.simulator.actors.actor import Actor
 from services.simulator.actors.motion import Path, SpeedProfile
 from services.simulator.options import DriveOptions
-from services.simulator.shapes.vehicle_styles import BICYCLE, VehicleStyle
-from services.simulator.worlds.town.paths import LoopPath, Shift, StraightPath, Sway
+from services.simulator.shapes.vehicle_styles import BICYCLE
+from services.simulator.worlds.town.paths import LoopPath, StraightPath, Sway
 from services.simulator.worlds.town.plan import TownPlan
 from services.simulator.worlds.town.profile import LANE_CENTRES_M
+from services.simulator.worlds.town.traffic.arrivals import side_arrivals
 from services.simulator.worlds.town.traffic.camera_car import CarCamera
 from services.simulator.worlds.town.traffic.crossers import draw_crossers
-from services.simulator.worlds.town.traffic.fleet import LONG_M, Vehicle
+from services.simulator.worlds.town.traffic.fleet import Vehicle
+from services.simulator.worlds.town.traffic.junctions import Junction
 from services.simulator.worlds.town.traffic.looks import Wardrobe
+from services.simulator.worlds.town.traffic.network import Network
 from services.simulator.worlds.town.traffic.parking import Parked, PullOut, parked_vehicles, parking_bays
 from services.simulator.worlds.town.traffic.pavements import pedestrians
 from services.simulator.worlds.town.traffic.population import barred_track, loop_population, shared_track
-from services.simulator.worlds.town.traffic.simulation import STEP_S, TrafficSimulation
+from services.simulator.worlds.town.traffic.side_traffic import SideTraffic
+from services.simulator.worlds.town.traffic.simulation import STEP_S, TrafficSimulation, Yielding
 from services.simulator.worlds.town.traffic.state import VehicleState
 from services.simulator.worlds.town.traffic.tracks import Tracks, loop_tracks
+from services.simulator.worlds.town.traffic.vehicle_ways import WayMaker
 from services.simulator.worlds.town.traffic.zebras import Zebra
 
 Floats = NDArray[np.float64]
 
 _SPARE_S = 2.0
 """Simulated beyond the last frame."""
-_CYCLIST_OUT_M = 0.78
-"""Cyclists keep this far to the right of the outer lane's middle."""
 _CAMERA_SWAY = Sway(0.12, 125.0, 0.0)
+_FAR_M = 200.0
+"""Who is never nearer to the camera than this is left out; parked cars are not."""
 
 
 def plan_traffic(options: DriveOptions, plan: TownPlan, texture: Mapping[str, int]) -> tuple[list[Actor], CarCamera]:
@@ -50,93 +55,87 @@ class _Planner:
         self._wardrobe = Wardrobe(texture)
         self._end_s = options.timestamp_ns(options.frames) * 1e-9 + _SPARE_S
         self._actors: list[Actor] = []
+        self._network = Network(plan)
+        self._placed = loop_population(options, Tracks(loop_tracks(plan)))
+        self._parked = parked_vehicles(options, parking_bays(plan))
+        starters = [one for one in self._parked if one.starts]
+        self._pull_outs = [PullOut(one, len(self._placed) + k) for k, one in enumerate(starters)]
+        self._arrivals = side_arrivals(options, self._network, self._end_s)
+        rng = np.random.default_rng([options.seed_of_traffic, 45])
+        self._crossers = draw_crossers(rng, len(plan.zebras_m), options.traffic)
 
     def plan(self) -> tuple[list[Actor], CarCamera]:
-        options, plan = self._options, self._plan
-        tracks = Tracks(loop_tracks(plan))
-        placed = loop_population(options, tracks)
-        parked = parked_vehicles(options, parking_bays(plan))
-        starters = [one for one in parked if one.starts]
-        vehicles = [one.vehicle for one in placed] + [one.vehicle for one in starters]
-        state = VehicleState(vehicles, tracks)
-        state.always_beside = shared_track(options)
-        for row, one in enumerate(placed):
-            state.enter(row, 0, one.track, one.x_m, one.speed_m_s)
-        pull_outs = [PullOut(one, len(placed) + k) for k, one in enumerate(starters)]
-        rng = np.random.default_rng([options.seed_of_traffic, 45])
-        crossers = draw_crossers(rng, len(plan.zebras_m), options.traffic)
-        zebras = [Zebra(plan, number, crossers, len(vehicles), options.traffic) for number in range(len(plan.zebras_m))]
-        speeds = TrafficSimulation(state, [*zebras, *pull_outs], barred_track(options)).run(
-            int(np.ceil(self._end_s / STEP_S))
-        )
-        for row, one in enumerate(placed[1:], 1):
-            self._drive(one.vehicle, *self._on_loop(state, row, one.track, one.vehicle.style), speeds[row])
-        for starter in pull_outs:
-            self._pull_out(starter, state, speeds[starter.row])
-        for stander in parked:
-            if not stander.starts:
-                self._stand(stander)
-        for crosser in crossers:
-            look = int(rng.integers(0, 2**31))
-            self._add_person(crosser.path(plan), crosser.speed(), look)
-        for person in pedestrians(plan, options):
+        options = self._options
+        state, speeds = self._simulated()
+        camera = self._camera(state, speeds[0])
+        ways = WayMaker(self._plan, self._network, state, options.seed_of_traffic)
+        for row, placed in enumerate(self._placed[1:], 1):
+            self._add_vehicle(placed.vehicle, ways.path(row, placed.vehicle), speeds[row], 0.0)
+        for one in self._pull_outs:
+            begin_s = float(state.enter_step[one.row]) * STEP_S
+            # Who has not pulled out yet does so after the end, so that a longer drive begins with the same actors.
+            waits = begin_s < 0.0
+            drawn = np.array([0.0, 1.0]) if waits else speeds[one.row]
+            self._add_vehicle(one.parked.vehicle, ways.out_of_bay(one), drawn, self._end_s if waits else begin_s)
+        for parked in self._parked:
+            if not parked.starts:
+                self._add_vehicle(parked.vehicle, self._bay_path(parked), np.zeros(2), 0.0)
+        for crosser in self._crossers:
+            self._add_person(crosser.path(self._plan), crosser.speed(), crosser.look)
+        for person in pedestrians(self._plan, options):
             self._add_person(person.path, person.speed, person.look)
-        return self._actors, self._camera(state, speeds[0])
+        for number, arrival in enumerate(self._arrivals):
+            row = len(self._placed) + len(self._pull_outs) + number
+            if state.enter_step[row] >= 0:
+                begin_s = float(state.enter_step[row]) * STEP_S
+                self._add_vehicle(arrival.vehicle, ways.path(row, arrival.vehicle), speeds[row], begin_s)
+        return self._actors, camera
 
-    def _on_loop(self, state: VehicleState, row: int, track: int, style: VehicleStyle | None) -> tuple[Path, float]:
-        """Path of a vehicle that is on the loop from the start, and when that is."""
-        outside = -1.0 if track < 2 else 1.0
-        length_m = float(state.length_m[row])
-        out_m = _CYCLIST_OUT_M if style is BICYCLE else 0.0
-        n = outside * (LANE_CENTRES_M[track % 2] + out_m)
-        ahead = 1.0 if track < 2 else -1.0
-        return self._loop_path(
-            ahead, ahead * float(state.enter_x_m[row]), n, shifts=state.shifts[row], length_m=length_m, row=row
-        ), 0.0
+    def _simulated(self) -> tuple[VehicleState, list[Floats]]:
+        options, plan = self._options, self._plan
+        vehicles = [one.vehicle for one in self._placed]
+        vehicles += [one.parked.vehicle for one in self._pull_outs] + [one.vehicle for one in self._arrivals]
+        state = VehicleState(vehicles, Tracks([*loop_tracks(plan), *self._network.tracks]))
+        state.always_beside = shared_track(options)
+        for row, one in enumerate(self._placed):
+            state.enter(row, 0, one.track, one.x_m, one.speed_m_s)
+        count, round_m = len(vehicles), plan.loop.length_m
+        zebras = [Zebra(plan, k, self._crossers, count, options.traffic) for k in range(len(plan.zebras_m))]
+        junctions = [
+            Junction(plan, self._network, k, vehicles=count, traffic=options.traffic, seed=options.seed_of_traffic)
+            for k in range(len(plan.crossings))
+        ]
+        for zebra in zebras:
+            zebra.site.know([junction.site for junction in junctions], round_m)
+        for junction in junctions:
+            junction.site.know([zebra.site for zebra in zebras], round_m)
+        first = len(self._placed) + len(self._pull_outs)
+        side = SideTraffic(self._network, self._arrivals, first, STEP_S)
+        places: list[Yielding] = [side, *zebras, *junctions, *self._pull_outs]
+        steps = int(np.ceil(self._end_s / STEP_S))
+        return state, TrafficSimulation(state, places, barred_track(options)).run(steps)
 
-    def _loop_path(
-        self, ahead: float, s_m: float, n_m: float, *, shifts: list[Shift], length_m: float, row: int
-    ) -> LoopPath:
-        phase = float(np.random.default_rng([self._options.seed_of_traffic, 46, row]).uniform(0.0, 6.28))
-        sway = Sway(0.0 if length_m > LONG_M else 0.08, 90.0, phase)
-        return LoopPath(self._plan, ahead, s_m, n_m, shifts=tuple(shifts), sway=sway)
-
-    def _drive(self, vehicle: Vehicle, path: Path, begin_s: float, speeds: Floats) -> None:
+    def _add_vehicle(self, vehicle: Vehicle, path: Path, speeds: Floats, begin_s: float) -> None:
         assert vehicle.style is not None
-        profile = _profile(speeds, begin_s)
-        looks = self._wardrobe.vehicle(vehicle.style, vehicle.look)
-        self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **looks))
+        times = begin_s + STEP_S * np.arange(len(speeds))
+        profile = SpeedProfile(list(zip(times.tolist(), speeds.tolist(), strict=True)))
+        looks = [self._wardrobe.vehicle(vehicle.style, vehicle.look)]
         if vehicle.style is BICYCLE:
-            rider = self._wardrobe.rider(vehicle.look)
-            self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **rider))
-
-    def _pull_out(self, one: PullOut, state: VehicleState, speeds: Floats) -> None:
-        parked = one.parked
-        ahead = 1.0 if parked.bay.way == 0 else -1.0
-        shifts = [Shift(0.0, one.merge_m, one.slide_m), *state.shifts[one.row]]
-        path = LoopPath(self._plan, ahead, parked.s_m, parked.n_m, shifts=tuple(shifts))
-        begin = int(state.enter_step[one.row])
-        if begin < 0:
-            self._drive(parked.vehicle, path, self._end_s, np.array([0.0, 1.0]))
-        else:
-            self._drive(parked.vehicle, path, begin * STEP_S, speeds)
-
-    def _stand(self, parked: Parked) -> None:
-        loop = self._plan.loop
-        heading = float(loop.heading(parked.s_m)) + parked.crooked_rad + (np.pi if parked.bay.way else 0.0)
-        path = StraightPath(loop.point(parked.s_m, parked.n_m), heading, self._plan.ground)
-        self._drive(parked.vehicle, path, 0.0, np.zeros(2))
+            looks.append(self._wardrobe.rider(vehicle.look))
+        for look in looks:
+            self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **look))
 
     def _add_person(self, path: Path, speed: SpeedProfile, look: int) -> None:
         self._actors.append(Actor(len(self._actors) + 1, path=path, speed=speed, **self._wardrobe.person(look)))
 
+    def _bay_path(self, parked: Parked) -> StraightPath:
+        loop = self._plan.loop
+        heading = float(loop.heading(parked.s_m)) + parked.crooked_rad + (np.pi if parked.bay.way else 0.0)
+        return StraightPath(loop.point(parked.s_m, parked.n_m), heading, self._plan.ground)
+
     def _camera(self, state: VehicleState, speeds: Floats) -> CarCamera:
         n = self._options.lateral_offset_m - LANE_CENTRES_M[0]
-        path = LoopPath(self._plan, 1.0, float(state.enter_x_m[0]), n, sway=_CAMERA_SWAY)
-        return CarCamera(path, _profile(speeds, 0.0), self._options.camera_height_m)
-
-
-def _profile(speeds: Floats, begin_s: float) -> SpeedProfile:
-    """Speed over time from speeds step by step; before the first one it stands if that is zero."""
-    times = begin_s + STEP_S * np.arange(len(speeds))
-    return SpeedProfile(list(zip(times.tolist(), speeds.tolist(), strict=True)))
+        path = LoopPath(self._plan, 1.0, state.legs[0][0].x_m, n, sway=_CAMERA_SWAY)
+        times = STEP_S * np.arange(len(speeds))
+        profile = SpeedProfile(list(zip(times.tolist(), speeds.tolist(), strict=True)))
+        return CarCamera(path, profile, self._options.camera_height_m)

@@ -45,7 +45,7 @@ class TrafficSimulation:
         for number in range(steps + 1):
             now_s = number * STEP_S
             state.locate()
-            state.gate_m[:] = np.inf
+            state.gate_m[:], state.cap_m_s[:] = np.inf, np.inf
             rows = state.on_loop()
             for place in self._places:
                 place.step(state, rows, now_s, self._camera_free_s)
@@ -70,7 +70,9 @@ class TrafficSimulation:
             stopping = self._following(gated, gap, np.zeros(len(gated)))
             acceleration[gated] = np.minimum(acceleration[gated], stopping)
         later = np.maximum(speed + acceleration[rows] * STEP_S, 0.0)
-        state.x_m[rows] += 0.5 * (speed + later) * STEP_S
+        way = 0.5 * (speed + later) * STEP_S
+        state.x_m[rows] += way
+        state.gone_m[rows] += way
         state.speed_m_s[rows] = later
 
     def _behind_leaders(self, order: Order) -> Floats:
@@ -86,7 +88,8 @@ class TrafficSimulation:
         track, around = state.track[rows], state.around_m[rows]
         # Drivers feel metres of their own lane; x is the centre line's.
         stretch = state.tracks.stretch(track, around)
-        wanted = np.minimum(state.wanted_m_s[rows], stretch * state.tracks.limit_m_s(track, around))
+        wanted = np.minimum(state.wanted_m_s[rows], state.cap_m_s[rows])
+        wanted = np.minimum(wanted, stretch * state.tracks.limit_m_s(track, around))
         speed = stretch * state.speed_m_s[rows]
         felt = following_acceleration(state.drivers.take(rows), speed, wanted, gap_m, stretch * leader_m_s)
         return felt / stretch

@@ -20,6 +20,7 @@ _COMFORT_M_S2 = 2.5
 _MILD_M_S2 = 0.8
 _REACTION_S = 1.0
 _SIGHT_M = 110.0
+_NEIGHBOUR_M = 40.0
 _CLEARING_S = 8.0
 """A site whose cars do not get away within this is opened again."""
 
@@ -41,8 +42,21 @@ class Site:
         self.state = SiteState.OPEN
         self.since_s = -np.inf
         self.busy_until_s = -np.inf
+        self._neighbours: list[Site] = []
+        self._ways: tuple[int, ...] = (0, 1)
         self._passes = np.zeros(vehicles, bool)
         """Who was too near to stop and goes through."""
+
+    def know(self, sites: list[Site], round_m: float) -> None:
+        """Learn which of the other sites are so near that who turns there could not stop here."""
+        for site in sites:
+            apart = abs((site.middle_m - self.middle_m + 0.5 * round_m) % round_m - 0.5 * round_m)
+            if apart < _NEIGHBOUR_M:
+                self._neighbours.append(site)
+
+    def is_alone(self) -> bool:
+        """Whether nobody crosses next to it."""
+        return all(site.state is SiteState.OPEN for site in self._neighbours)
 
     def change(self, state: SiteState, now_s: float) -> None:
         """Go into another state."""
@@ -59,16 +73,18 @@ class Site:
         ahead, round_m = self.ahead_m(state, rows), state.tracks.length_m[0]
         return np.asarray(round_m - ahead < 2.0 * self._reach_m + state.length_m[rows])
 
-    def gap_for_all(self, state: VehicleState, rows: Ints) -> bool:
-        """Whether nobody would have to brake for it."""
+    def gap_for_all(self, state: VehicleState, rows: Ints, ways: tuple[int, ...] = (0, 1)) -> bool:
+        """Whether nobody of these ways would have to brake for it."""
+        rows = _going(state, rows, ways)
         if self.inside(state, rows).any():
             return False
         speed = state.speed_m_s[rows]
         needed = speed * speed / (2.0 * _MILD_M_S2) + _REACTION_S * speed
         return bool((self.ahead_m(state, rows) > needed).all())
 
-    def close(self, state: VehicleState, rows: Ints, now_s: float) -> None:
-        """Stop the traffic, as far as it can."""
+    def close(self, state: VehicleState, rows: Ints, now_s: float, ways: tuple[int, ...] = (0, 1)) -> None:
+        """Stop the traffic of these ways, as far as it can."""
+        self._ways = ways
         speed = state.speed_m_s[rows]
         self._passes[:] = False
         self._passes[rows] = self.ahead_m(state, rows) < speed * speed / (2.0 * _COMFORT_M_S2) + 0.3 * speed
@@ -76,6 +92,7 @@ class Site:
 
     def is_empty(self, state: VehicleState, rows: Ints) -> bool:
         """Whether everybody who could not stop is through."""
+        rows = _going(state, rows, self._ways)
         coming = self._passes[rows] & (self.ahead_m(state, rows) < _SIGHT_M)
         return not bool((self.inside(state, rows) | coming).any())
 
@@ -87,6 +104,12 @@ class Site:
         """Let those who can stop see the line."""
         if self.state is SiteState.OPEN:
             return
+        rows = _going(state, rows, self._ways)
         ahead = self.ahead_m(state, rows)
         held = (ahead < _SIGHT_M) & ~self._passes[rows]
         state.gate_m[rows[held]] = np.minimum(state.gate_m[rows[held]], ahead[held])
+
+
+def _going(state: VehicleState, rows: Ints, ways: tuple[int, ...]) -> Ints:
+    """Those of some vehicles on the loop that go one of these ways."""
+    return rows if len(ways) == 2 else rows[state.track[rows] // 2 == ways[0]]

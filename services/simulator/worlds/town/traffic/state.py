@@ -32,11 +32,21 @@ class Order:
     first: Ints
 
 
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A stretch of a vehicle's way on one track: x where it begins, and the way gone until there."""
+
+    track: int
+    x_m: float
+    gone_m: float
+
+
 class VehicleState:
     """Columns over all vehicles (N,), those included who have not come yet or are gone.
 
-    x_m: middle of the vehicle on its track. beside: a second track it takes room on, -1: none. enter_x_m, enter_step:
-    where and when it came. gate_m: road to a stop line that holds it.
+    x_m: middle of the vehicle on its track. gone_m: way since it came, enter_step: when. beside: a second track it
+    takes room on, -1: none, until beside_ends_m of its way; beside_dx_m: x there less x_m. gate_m: road to what holds
+    it. cap_m_s: speed that a turn ahead allows. routes: tracks still to take. left: gone for good.
     """
 
     def __init__(self, vehicles: list[Vehicle], tracks: Tracks) -> None:
@@ -48,25 +58,48 @@ class VehicleState:
         self.overtakes = np.array([not v.keeps_lane for v in vehicles])
         self.track = np.zeros(count, np.intp)
         self.beside = np.full(count, -1, np.intp)
-        self.x_m, self.speed_m_s = np.zeros(count), np.zeros(count)
+        self.beside_dx_m, self.beside_ends_m = np.zeros(count), np.full(count, -np.inf)
+        self.x_m, self.speed_m_s, self.gone_m = np.zeros(count), np.zeros(count), np.zeros(count)
         self.around_m = np.zeros(count)
         self.active = np.zeros(count, bool)
-        self.enter_x_m, self.enter_step = np.zeros(count), np.full(count, -1)
-        self.gate_m = np.full(count, np.inf)
+        self.left = np.zeros(count, bool)
+        self.enter_step = np.full(count, -1)
+        self.gate_m, self.cap_m_s = np.full(count, np.inf), np.full(count, np.inf)
+        self.leave_x_m = np.full(count, np.inf)
+        self.routes: list[list[int]] = [[] for _ in vehicles]
         self.shifts: list[list[Shift]] = [[] for _ in vehicles]
-        self.shift_ends_m = np.full(count, -np.inf)
+        self.legs: list[list[Leg]] = [[] for _ in vehicles]
         self.always_beside = -1
         """A second lane that vehicle 0 takes room on all the time, -1: none."""
 
     def enter(self, row: int, step: int, track: int, x_m: float, speed_m_s: float) -> None:
         """Vehicle `row` comes onto a track."""
-        self.track[row], self.x_m[row], self.speed_m_s[row] = track, x_m, speed_m_s
-        self.enter_x_m[row], self.enter_step[row] = x_m, step
-        self.active[row] = True
+        self.enter_step[row], self.active[row] = step, True
+        self.speed_m_s[row] = speed_m_s
+        self.go_on(row, track, x_m)
+
+    def go_on(self, row: int, track: int, x_m: float) -> None:
+        """Vehicle `row` is on another track from here on."""
+        self.track[row], self.x_m[row] = track, x_m
+        self.legs[row].append(Leg(track, x_m, float(self.gone_m[row])))
+
+    def take_room(self, row: int, track: int, dx_m: float, until_gone_m: float) -> None:
+        """Vehicle `row` is in the way on a second track, too."""
+        self.beside[row], self.beside_dx_m[row], self.beside_ends_m[row] = track, dx_m, until_gone_m
+
+    def leave(self, row: int) -> None:
+        """Vehicle `row` goes for good."""
+        self.active[row], self.left[row], self.beside[row] = False, True, -1
 
     def rows(self) -> Ints:
         """Vehicles that are there."""
         return np.flatnonzero(self.active)
+
+    def on_track(self, track: int) -> tuple[Ints, Floats]:
+        """Vehicles that take room on a track, and their x there."""
+        rows = np.flatnonzero(self.active & ((self.track == track) | (self.beside == track)))
+        beside = self.track[rows] != track
+        return rows, self.x_m[rows] + np.where(beside, self.beside_dx_m[rows], 0.0)
 
     def on_loop(self) -> Ints:
         """Vehicles on the loop."""
@@ -85,6 +118,8 @@ class VehicleState:
         if self.always_beside >= 0:
             row, track = np.append(row, 0), np.append(track, self.always_beside)
         around = self.around_m[row]
+        again = slice(len(rows), len(rows) + len(changing))
+        around[again] = self.tracks.around(track[again], self.x_m[changing] + self.beside_dx_m[changing])
         sort = np.lexsort((around, track))
         row, track, around = row[sort], track[sort], around[sort]
         arc = self.tracks.arc_m(track, around)
@@ -92,10 +127,24 @@ class VehicleState:
         ahead = np.arange(1, len(row) + 1)
         last = first[1:][first[1:] > first[:-1]] - 1
         ahead[last] = first[track[last]]
-        closed = self.tracks.closed[track]
-        away = arc[ahead] - arc
-        away[last] += np.where(closed[last], self.tracks.round_arc_m[track[last]], np.inf)
+        away = arc[np.minimum(ahead, len(row) - 1)] - arc
+        away[last] += self.tracks.round_arc_m[track[last]]
+        for place in last[~self.tracks.closed[track[last]]]:
+            self._look_beyond(int(place), row, track, first, ahead, away, arc)
         gap = away - 0.5 * (self.length_m[row] + self.length_m[row[ahead]])
         alone = np.isinf(gap) | (ahead == np.arange(len(row)))
         leader = np.where(alone, row, row[ahead])
         return Order(row, track, arc, np.where(alone, np.inf, gap), leader, first)
+
+    def _look_beyond(
+        self, place: int, row: Ints, track: Ints, first: Ints, ahead: Ints, away: Floats, arc: Floats
+    ) -> None:
+        """Who is first on an open track follows the last one on the next track of his route."""
+        away[place], ahead[place] = np.inf, place
+        route = self.routes[row[place]]
+        if track[place] != self.track[row[place]] or not route or route[0] < LOOP_TRACKS:
+            return
+        begin, end = first[route[0]], first[route[0] + 1]
+        if end > begin:
+            ahead[place] = begin
+            away[place] = self.tracks.length_m[track[place]] - arc[place] + arc[begin]

@@ -15,10 +15,10 @@ from services.simulator.worlds.town.traffic.state import VehicleState
 Ints = NDArray[np.intp]
 
 _PATIENCE_S = 4.0
-_CAMERA_REST_S = 25.0
+_CAMERA_REST_S = 40.0
 """The camera's car is not stopped again sooner than this after it could go on."""
 _CAMERA_NEAR_M = 70.0
-_FLOW_S = 18.0
+_FLOW_S = 34.0
 """Least time between two reds."""
 _LIGHT_TRAFFIC = 0.15
 """Below this there are no lights: people wait for gaps."""
@@ -40,7 +40,7 @@ class Zebra:
         site = self.site
         if site.state is SiteState.OPEN:
             waiting = [person for person in self._people if person.ready_s <= now_s]
-            if not waiting:
+            if not waiting or not site.is_alone():
                 return
             if site.gap_for_all(state, rows) or self._light_turns(waiting, state, now_s, camera_free_s):
                 site.close(state, rows, now_s)
