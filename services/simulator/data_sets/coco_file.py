@@ -3,23 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from schemas.categories import category_id
+from schemas.categories import CATEGORY_IDS, CATEGORY_NAMES, NO_CATEGORY, category_id
 from services.formats.coco import CocoAnnotation, CocoCategory, CocoDataset, CocoImage
 from services.simulator.data_sets.frame_truth import FrameTruth
 from services.simulator.data_sets.layout import SequencePaths
 from services.simulator.options import DriveOptions
 
-CATEGORIES = ("person", "bicycle", "car", "motorcycle", "bus", "truck", "train", "dog", "cat", "tv")
-"""What any world shows: the file has the same categories whatever a drive came across."""
-
 
 def coco_dataset(options: DriveOptions, sequences: Mapping[str, Sequence[FrameTruth]]) -> CocoDataset:
     """Annotations of the left colour images, ids counted through from 1, none of them a crowd.
 
-    `attributes` say `track_id`, which lasts over a sequence, and `moving`. File names are relative to the data set.
+    The categories are all of COCO's; what is none of them is left out. `attributes` say `track_id`, which lasts over a
+    sequence, and `moving`. File names are relative to the data set.
     """
+    categories = tuple(CocoCategory(number, name) for number, name in zip(CATEGORY_IDS, CATEGORY_NAMES, strict=True))
     images: list[CocoImage] = []
     annotations: list[CocoAnnotation] = []
     for sequence, frames in sequences.items():
@@ -30,11 +29,9 @@ def coco_dataset(options: DriveOptions, sequences: Mapping[str, Sequence[FrameTr
             for item in frame.objects:
                 attributes = {"track_id": item.object_id, "moving": item.moving}
                 number = category_id(item.category)
+                if number == NO_CATEGORY:
+                    continue
                 annotations.append(
                     CocoAnnotation.of_mask(len(annotations) + 1, image_id, number, item.mask, attributes)
                 )
-    return CocoDataset(tuple(images), _categories(CATEGORIES), tuple(annotations), {"description": "kinemap simulate"})
-
-
-def _categories(names: Iterable[str]) -> tuple[CocoCategory, ...]:
-    return tuple(CocoCategory(category_id(name), name) for name in names)
+    return CocoDataset(tuple(images), categories, tuple(annotations), {"description": "kinemap simulate"})
