@@ -40,7 +40,10 @@ def heatmap(
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         plot_heat_map(heat, out, given[0].resolve().name if len(given) == 1 else "")
-        write_report({"folders": ["/".join(folder.path.resolve().parts[-2:]) for folder in folders], **numbers}, out.with_suffix(".json"))
+        write_report(
+            {"folders": ["/".join(folder.path.resolve().parts[-2:]) for folder in folders], **numbers},
+            out.with_suffix(".json"),
+        )
     except OSError as error:
         raise ResourceError(f"--out {out}: cannot be written ({error.strerror})") from error
     print(f"frames            {heat.frames}, {heat.frames_with_movers} with something that moves")

@@ -15,8 +15,7 @@ from schemas.records import MotionState
 # The engine's own: the lower threshold it looks at cells with in which there is no corner, and the side of these cells.
 _FAST_THRESHOLD = 7
 _CELL_PX = 35
-_SURPLUS = 5
-"""times as many corners are found as are chosen"""
+_ALL_CORNERS = 200_000
 _STANDING = (MotionState.NON_MOVING, MotionState.STATIC)
 
 
@@ -80,7 +79,7 @@ class FeatureBalance:
     def __init__(self, features: int = 2000, pyramid_levels: int = 8, pyramid_factor: float = 1.2) -> None:
         self._features = features
         self._orb = cv2.ORB.create(
-            _SURPLUS * features, scaleFactor=pyramid_factor, nlevels=pyramid_levels, fastThreshold=_FAST_THRESHOLD
+            _ALL_CORNERS, scaleFactor=pyramid_factor, nlevels=pyramid_levels, fastThreshold=_FAST_THRESHOLD
         )
 
     def measure(self, frame: LabelledImage) -> FrameBalance:

@@ -15,7 +15,8 @@ from services.runtime.errors import InputError
 
 _GRID = (6, 18)
 """rows and columns of the cells whose entropy is taken"""
-_HEIGHT_IN = 4.0
+_WIDTH_IN = 9.0
+_LEAST_HEIGHT_IN, _MOST_HEIGHT_IN = 2.0, 8.0
 
 
 @dataclass
@@ -109,7 +110,8 @@ class HeatMap:
 def plot_heat_map(heat: HeatMap, path: Path, title: str = "") -> None:
     """The share of the frames in which each pixel moves; dotted are the thirds, the cross is the centre of mass."""
     height, width = heat.mass.shape
-    figure = new_figure(height_in=min(_HEIGHT_IN, 1.6 + 7.5 * height / width), width_in=9.0)
+    height_in = float(np.clip(0.4 + 0.88 * _WIDTH_IN * height / width, _LEAST_HEIGHT_IN, _MOST_HEIGHT_IN))
+    figure = new_figure(height_in=height_in, width_in=_WIDTH_IN)
     axes = figure.add_subplot()
     shown = axes.imshow(100.0 * heat.mass / heat.frames, cmap="inferno", vmin=0.0, interpolation="nearest")
     for part in (1 / 3, 2 / 3):
@@ -117,7 +119,7 @@ def plot_heat_map(heat: HeatMap, path: Path, title: str = "") -> None:
         axes.axhline(part * height - 0.5, color="white", linewidth=0.8, linestyle=":")
     x, y = heat.mean_position
     axes.plot(x * width - 0.5, y * height - 0.5, marker="+", color="#40e0d0", markersize=14, markeredgewidth=2)
-    figure.colorbar(shown, ax=axes, label="frames in which it moves [%]", shrink=0.9, pad=0.01)
+    figure.colorbar(shown, ax=axes, label="frames in which it moves [%]", fraction=0.025, pad=0.01)
     numbers = f"middle third {heat.central_third:.0%} of the mass, entropy {heat.entropy:.2f}, {heat.frames} frames"
     axes.set_title(f"{title}: {numbers}" if title else numbers, fontsize=10)
     axes.set_xticks([])
