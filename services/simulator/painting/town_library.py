@@ -11,7 +11,7 @@ import numpy as np
 
 from services.simulator.painting import shopfronts, storeys, town_surfaces
 from services.simulator.painting.library import paint_shared
-from services.simulator.painting.surfaces import Image, asphalt, coloured, leaves, noise, roof_tiles, speckle, to_image
+from services.simulator.painting.surfaces import Image, coloured, leaves, noise, roof_tiles, speckle, to_image
 from services.simulator.painting.traffic_library import paint_traffic
 
 SHOPS = 9
@@ -27,7 +27,6 @@ TOWN_ROOFS = ("roof_red", "roof_brown", "roof_grey", "roof_slate", "roof_moss")
 def paint_town_library(seed: int) -> dict[str, Image]:
     """All textures of the town, those it shares with the street among them, name to BGR uint8 image."""
     painters: dict[str, Callable[[np.random.Generator], Image]] = {
-        "asphalt_side": lambda rng: asphalt(rng, 512),
         "setts_grey": lambda rng: town_surfaces.setts(rng, (138.0, 142.0, 146.0)),
         "setts_red": lambda rng: town_surfaces.setts(rng, (104.0, 116.0, 158.0)),
         "gravel": town_surfaces.gravel,

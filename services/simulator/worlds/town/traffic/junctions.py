@@ -22,9 +22,12 @@ _PATIENCE_S = 9.0
 _FLOW_S = 45.0
 _CAMERA_REST_S, _CAMERA_NEAR_M = 40.0, 70.0
 _LIGHT_TRAFFIC = 0.15
+_REST_S = 6.0
+"""After others have crossed, the loop goes on for so long at least."""
 _FOLLOW_S = 4.0
 """So long after the first one others follow him straight on."""
 _ROOM_M = 14.0
+_SLOW_M_S = 2.5
 _DECIDE_M = (32.0, 46.0)
 _TURN_OFF_SHARE = 0.16
 _TURN_BRAKE_M_S2 = 1.4
@@ -109,7 +112,11 @@ class Junction:
         row = fronts[0]
         link = self._link(state, row)
         arm = self._network.arms[link.arm]
-        if not self.site.is_alone():
+        if (
+            not self.site.is_alone()
+            or now_s - self.site.since_s < _REST_S
+            or not self._has_room(state, row, slow_only=True)
+        ):
             return
         ways = (arm.way,) if link.move == "right" else (0, 1)
         near = float(self.site.ahead_m(state, np.zeros(1, np.intp))[0]) < _CAMERA_NEAR_M
@@ -118,11 +125,12 @@ class Junction:
         if light or self.site.gap_for_all(state, rows, ways):
             self.site.close(state, rows, now_s, ways)
 
-    def _has_room(self, state: VehicleState, row: int) -> bool:
-        """Whether the way that a vehicle wants to take is free at its end."""
+    def _has_room(self, state: VehicleState, row: int, *, slow_only: bool = False) -> bool:
+        """Whether the way that a vehicle wants to take is free at its end; slow_only: of those who will be there yet."""
         link = self._link(state, row)
         target, x_m = state.on_track(link.to)
-        x_m, target = x_m[target != row], target[target != row]
+        counts = (target != row) & ((state.speed_m_s[target] < _SLOW_M_S) | (not slow_only))
+        x_m, target = x_m[counts], target[counts]
         if link.move == "straight":
             rear = x_m - 0.5 * state.length_m[target]
             return not bool((rear < _ROOM_M - 6.0).any())

@@ -19,9 +19,11 @@ STOP_AHEAD_M = 1.0
 _COMFORT_M_S2 = 2.5
 _MILD_M_S2 = 0.8
 _REACTION_S = 1.0
+_GOING_M = 12.0
+"""Who stands nearer than this is about to go, too."""
 _SIGHT_M = 110.0
 _NEIGHBOUR_M = 40.0
-_CLEARING_S = 8.0
+_CLEARING_S = 6.0
 """A site whose cars do not get away within this is opened again."""
 
 
@@ -79,7 +81,7 @@ class Site:
         if self.inside(state, rows).any():
             return False
         speed = state.speed_m_s[rows]
-        needed = speed * speed / (2.0 * _MILD_M_S2) + _REACTION_S * speed
+        needed = speed * speed / (2.0 * _MILD_M_S2) + _REACTION_S * speed + _GOING_M
         return bool((self.ahead_m(state, rows) > needed).all())
 
     def close(self, state: VehicleState, rows: Ints, now_s: float, ways: tuple[int, ...] = (0, 1)) -> None:
