@@ -90,29 +90,31 @@ class Camera:
             place = place - inner + np.stack(self.lens.distorted(inner[..., 0], inner[..., 1]), axis=-1)
         return np.asarray(place * k[0, 0] + k[:2, 2])
 
-    def window(self, low: Floats, high: Floats, margin_px: float = 1.5) -> tuple[slice, slice] | None:
-        """Smallest part of the image with every pixel whose direction lies between `low` and `high` (2,), each x, y.
+    def windows(self, low: Floats, high: Floats, margin_px: float = 1.5) -> list[tuple[slice, slice] | None]:
+        """Smallest parts of the image with every pixel whose direction lies between `low` and `high`, (B, 2), x and y.
 
-        None where there is no such pixel.
+        Rows and columns of each; None where there is no such pixel.
         """
-        found = []
         margin = margin_px * float(np.max(self.pixel_extent))
-        for axis, (lowest, highest) in enumerate(self._direction_ranges):
-            inside = np.flatnonzero((highest >= low[axis] - margin) & (lowest <= high[axis] + margin))
-            if not len(inside):
-                return None
-            found.append(slice(int(inside[0]), int(inside[-1]) + 1))
-        return found[1], found[0]
+        bounds = []
+        for axis, (largest_so_far, least_from_here) in enumerate(self._direction_ranges):
+            bounds.append(np.searchsorted(largest_so_far, low[:, axis] - margin, "left"))
+            bounds.append(np.searchsorted(least_from_here, high[:, axis] + margin, "right"))
+        return [
+            (slice(top, bottom), slice(left, right)) if left < right and top < bottom else None
+            for left, right, top, bottom in np.stack(bounds, axis=1).tolist()
+        ]
 
     @cached_property
     def _directions(self) -> dict[tuple[float, float], tuple[Floats32, Floats32]]:
         return {}
 
     @cached_property
-    def _direction_ranges(self) -> tuple[tuple[Floats32, Floats32], tuple[Floats32, Floats32]]:
-        """Least and largest x of each column, and y of each row."""
+    def _direction_ranges(self) -> list[tuple[Floats32, Floats32]]:
+        """For columns and x, then for rows and y: the largest up to each, and the least from each on."""
         x, y = self.normalised()
-        return (x.min(axis=0), x.max(axis=0)), (y.min(axis=1), y.max(axis=1))
+        sides = (x.min(axis=0), x.max(axis=0)), (y.min(axis=1), y.max(axis=1))
+        return [(np.maximum.accumulate(most), np.minimum.accumulate(least[::-1])[::-1]) for least, most in sides]
 
     @cached_property
     def _reach(self) -> float:

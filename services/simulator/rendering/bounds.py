@@ -31,6 +31,7 @@ def windows(camera: Camera, corners_in_camera: Floats) -> list[Window | None]:
     points = np.concatenate([corners_in_camera, cut], axis=1)
     seen = np.concatenate([depth >= _NEAREST_M, crosses], axis=1)
     place = points[..., :2] / np.where(seen, points[..., 2], 1.0)[..., None]
+    # Boxes that are not in sight keep an infinite, empty range.
     low = np.where(seen[..., None], place, np.inf).min(axis=1)
     high = np.where(seen[..., None], place, -np.inf).max(axis=1)
-    return [camera.window(*box) if np.isfinite(box[0]).all() else None for box in zip(low, high, strict=True)]
+    return camera.windows(low, high)

@@ -16,6 +16,7 @@ from services.simulator.rendering.bounds import BOX_CORNERS, windows
 from services.simulator.rendering.contact import Footprint
 from services.simulator.rendering.nearest import Surfaces
 from services.simulator.rendering.triangles import TriangleTable, joined, table_of
+from services.simulator.rendering.whereabouts import Whereabouts
 from services.simulator.shapes.meshes import merged
 from services.simulator.worlds.world import World
 
@@ -56,6 +57,8 @@ class Scene:
     def __init__(self, world: World, camera: Camera, threads: int, baseline_m: float, shadows: bool) -> None:
         self._world, self._camera, self._threads = world, camera, threads
         self._baseline_m, self._shadows = baseline_m, shadows
+        self._restless = [actor for actor in world.actors if not actor.always_still]
+        self._whereabouts = Whereabouts(self._restless)
         self._still = {actor.instance_id: actor.at(0.0) for actor in world.actors if actor.always_still}
         table = table_of(world.mesh, world.mesh.vertices, np.zeros(len(world.mesh.triangles), np.int32))
         parked = [_table_at([(a, self._still[a.instance_id])]) for a in world.actors if a.always_still]
@@ -73,11 +76,10 @@ class Scene:
         return Moment(t_s, pose, near, surfaces, [actor for actor, _ in moving])
 
     def _near(self, world_from_camera: Floats, t_s: float) -> list[tuple[Actor, ActorState]]:
-        near = []
-        for actor in self._world.actors:
-            if actor.always_still:
-                near.append((actor, self._still[actor.instance_id]))
-                continue
+        near = [(actor, self._still[actor.instance_id]) for actor in self._world.actors if actor.always_still]
+        behind_m = _SHADOW_RANGE_M if self._shadows else 0.0
+        for number in self._whereabouts.perhaps_in_sight(world_from_camera, t_s, _VIEW_RANGE_M, behind_m):
+            actor = self._restless[number]
             state = actor.at(t_s)
             if not state.present:
                 continue
@@ -86,7 +88,7 @@ class Scene:
             ahead = float(away @ world_from_camera[:2, 2]) > -actor.size_m[0]
             if (ahead and distance < _VIEW_RANGE_M) or (self._shadows and distance < _SHADOW_RANGE_M):
                 near.append((actor, state))
-        return near
+        return sorted(near, key=lambda pair: pair[0].instance_id)
 
     def _boxes(self, moving: Sequence[tuple[Actor, ActorState]], world_from_camera: Floats) -> Floats:
         """Corners of boxes round actors in the camera's frame, (A, 8, 3), wide enough for both cameras."""

@@ -77,14 +77,17 @@ def test_what_lies_outside_a_barrel_lens_does_not_fold_back_into_the_image() -> 
 def test_window_holds_every_pixel_that_looks_into_a_range() -> None:
     lens = camera(lens="radial", distortion=RADIAL)
     x, y = lens.normalised()
-    low, high = np.array([0.11, -0.2]), np.array([0.35, 0.05])
-    window = lens.window(low, high)
+    low, high = (
+        np.array([[0.11, -0.2], [5.0, 0.0], [np.inf, np.inf]]),
+        np.array([[0.35, 0.05], [6.0, 0.1], [-np.inf] * 2]),
+    )
+    window, beside, nowhere = lens.windows(low, high)
     assert window is not None
-    inside = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
+    inside = (x >= low[0, 0]) & (x <= high[0, 0]) & (y >= low[0, 1]) & (y <= high[0, 1])
     assert inside.any()
     assert inside.sum() == inside[window].sum()
     assert inside[window].mean() > 0.5
-    assert lens.window(np.array([5.0, 0.0]), np.array([6.0, 0.1])) is None
+    assert beside is nowhere is None
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nobody in sight is overlooked for being asked only roughly."""
+
+import numpy as np
+
+from services.simulator.drive import Drive
+from services.simulator.options import DriveOptions
+from services.simulator.rendering.whereabouts import Whereabouts
+from services.simulator.worlds.build import build_world
+
+
+def test_everybody_in_range_is_found_and_many_others_are_not() -> None:
+    world = build_world(DriveOptions(world="town", traffic=0.6, seed=3))
+    actors = [actor for actor in world.actors if not actor.always_still]
+    whereabouts = Whereabouts(actors)
+    asked = 0
+    for t_s in (0.0, 3.3, 12.49, 12.51, 63.6, 64.0, 5.0):
+        pose = world.camera_path.world_from_camera(t_s)
+        found = set(whereabouts.perhaps_in_sight(pose, t_s, 80.0, 0.0).tolist())
+        for number, actor in enumerate(actors):
+            state = actor.at(t_s)
+            away = state.centre_m[:2] - pose[:2, 3]
+            if state.present and np.hypot(*away) < 80.0 and away @ pose[:2, 2] > -actor.size_m[0]:
+                assert number in found
+        asked += len(found)
+    assert 0 < asked < 0.8 * 7 * len(actors)
+
+
+def test_who_is_out_of_sight_is_not_built_and_who_is_in_sight_is(street: Drive) -> None:
+    """The moving surfaces of a moment are few, and a drive that builds all of them (for shadows) sees the same."""
+    everybody = Drive(DriveOptions(shadows=True))
+    for index in (110, 190, 240):
+        assert np.array_equal(street.render(index).labels, everybody.render(index).labels)
+        assert np.array_equal(street.render(index).depth_m, everybody.render(index).depth_m)
