@@ -7,7 +7,7 @@ from services.camera.lossless import LosslessDelivery
 from services.camera.pacing import AsTheyCome, Pacing
 from services.camera.position import PositionFile
 from services.camera.realtime import RealtimeDelivery
-from services.camera.sources.live_address import is_live, without_credentials
+from services.camera.sources.live.live_address import is_live, without_credentials
 from services.runtime.config import Config
 from services.runtime.errors import InputError
 from services.runtime.frame_window import FrameWindow

@@ -14,7 +14,7 @@ from services.camera.frame_records import frame_records
 from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
-from services.camera.sources.live_address import is_live
+from services.camera.sources.live.live_address import is_live
 from services.camera.sources.opencv_log import silence_opencv
 from services.camera.sources.source import Source, SourceFrame
 from services.runtime.bus import Bus

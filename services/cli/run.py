@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.camera.sources.live_address import is_live
+from services.camera.sources.live.live_address import is_live
 from services.cli.flags import (
     ConfigFlag,
     InputArgument,

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One file a source of images, all behind `Source`; `open_source` says which one an input is."""
+"""Where images come from, all behind `Source`; `detect.open_source` says which source an input is."""

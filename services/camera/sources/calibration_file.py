@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from schemas.records import CameraCalibration
-from services.camera.sources.kitti_calibration import read_projections
+from services.camera.sources.kitti.calibration import read_projections
 from services.runtime.errors import InputError
 
 CALIBRATION_NAMES = ("calibration.toml", "calib.txt")

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from services.camera.sources.euroc import Euroc, is_euroc_folder
 from services.camera.sources.first_frames import FirstFrames
-from services.camera.sources.image_files import list_images
-from services.camera.sources.image_folder import ImageFolder
-from services.camera.sources.kitti_odometry import KittiOdometry, is_kitti_folder
-from services.camera.sources.kitti_raw import KittiRaw, drives_in, is_kitti_drive
-from services.camera.sources.kitti_tracking import KittiTracking, is_tracking_sequence, sequences_in
-from services.camera.sources.live_address import is_live
-from services.camera.sources.message_topics import TopicOptions
+from services.camera.sources.folders.euroc import Euroc, is_euroc_folder
+from services.camera.sources.folders.image_files import list_images
+from services.camera.sources.folders.image_folder import ImageFolder
+from services.camera.sources.folders.tum_rgbd import TumRgbd, is_tum_folder
+from services.camera.sources.kitti.odometry import KittiOdometry, is_kitti_folder
+from services.camera.sources.kitti.raw import KittiRaw, drives_in, is_kitti_drive
+from services.camera.sources.kitti.tracking import KittiTracking, is_tracking_sequence, sequences_in
+from services.camera.sources.live.live_address import is_live
+from services.camera.sources.recordings.message_topics import TopicOptions
 from services.camera.sources.simulator import Simulator
 from services.camera.sources.source import Source
-from services.camera.sources.tum_rgbd import TumRgbd, is_tum_folder
 from services.camera.sources.video_file import VIDEO_SUFFIXES, VideoFile
 from services.runtime.errors import InputError
 from services.simulator.options import DriveOptions
@@ -77,7 +77,7 @@ def _open_whole(given: str, options: SourceOptions, street: DriveOptions) -> Sou
     if given == SIMULATOR:
         return Simulator(street)
     if is_live(given):
-        from services.camera.sources.opencv_camera import open_live_camera
+        from services.camera.sources.live.opencv_camera import open_live_camera
 
         return open_live_camera(given, calibration=options.calibration)
     path = Path(given)
@@ -97,7 +97,7 @@ def _open_file(path: Path, options: SourceOptions) -> Source:
         return VideoFile(path, calibration=options.calibration)
     # Reading recordings needs libraries that no other input does.
     if suffix == SESSION_SUFFIX:
-        from services.camera.sources.mcap_file import open_mcap
+        from services.camera.sources.recordings.mcap_file import open_mcap
 
         return open_mcap(path, options.topics, calibration=options.calibration)
     if suffix in _BAG_SUFFIXES:
@@ -106,7 +106,7 @@ def _open_file(path: Path, options: SourceOptions) -> Source:
 
 
 def _open_bag(path: Path, options: SourceOptions) -> Source:
-    from services.camera.sources.ros_bag import open_ros_bag
+    from services.camera.sources.recordings.ros_bag import open_ros_bag
 
     return open_ros_bag(path, options.topics, calibration=options.calibration)
 

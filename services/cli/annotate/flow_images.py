@@ -33,7 +33,7 @@ def flow_images(
     import cv2
     import numpy as np
 
-    from services.camera.sources.image_files import ImageFiles
+    from services.camera.sources.folders.image_files import ImageFiles
     from services.evaluation.pictures.flow_colours import flow_colours
     from services.evaluation.run.report import write_report
     from services.formats.kitti_flow import FlowImage, write_kitti_flow

@@ -12,16 +12,16 @@ from schemas.codec import encode
 from services.camera.configured_source import open_configured_source
 from services.camera.frame_records import frame_records
 from services.camera.sources.detect import SourceOptions, open_source
-from services.camera.sources.euroc import Euroc
-from services.camera.sources.image_folder import ImageFolder
-from services.camera.sources.kitti_odometry import KittiOdometry
-from services.camera.sources.kitti_raw import KittiRaw
-from services.camera.sources.kitti_tracking import KittiTracking
-from services.camera.sources.mcap_session import McapSession
-from services.camera.sources.message_source import MessageSource
+from services.camera.sources.folders.euroc import Euroc
+from services.camera.sources.folders.image_folder import ImageFolder
+from services.camera.sources.folders.tum_rgbd import TumRgbd
+from services.camera.sources.kitti.odometry import KittiOdometry
+from services.camera.sources.kitti.raw import KittiRaw
+from services.camera.sources.kitti.tracking import KittiTracking
+from services.camera.sources.recordings.mcap_session import McapSession
+from services.camera.sources.recordings.message_source import MessageSource
 from services.camera.sources.simulator import Simulator
 from services.camera.sources.source import Source
-from services.camera.sources.tum_rgbd import TumRgbd
 from services.camera.sources.video_file import VideoFile
 from services.recorder.session_writer import SessionWriter
 from services.runtime.config import Config

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from schemas.codec.rigid import matrix_from_pose, pose_from_matrix
-from services.camera.sources.euroc import Euroc, is_euroc_folder
+from services.camera.sources.folders.euroc import Euroc, is_euroc_folder
 from services.camera.sources.source import SourceFrame
 from services.formats.euroc import write_euroc
 from services.formats.trajectory import Trajectory

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from services.camera.sources.image_files import ImageFiles, list_images
-from services.camera.sources.image_header import read_image_size
+from services.camera.sources.folders.image_files import ImageFiles, list_images
+from services.camera.sources.folders.image_header import read_image_size
 from services.runtime.errors import InputError
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from services.camera.sources.calibration_file import read_calibration
-from services.camera.sources.image_folder import ImageFolder
+from services.camera.sources.folders.image_folder import ImageFolder
 from services.runtime.errors import InputError
 
 CALIBRATION = "fx = 20.0\nfy = 21.0\ncx = 16.0\ncy = 12.0\nwidth = 32\nheight = 24\n"

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from services.camera.sources.kitti_odometry import KittiOdometry, is_kitti_folder
-from services.camera.sources.number_rows import even_times_ns, read_times_ns
+from services.camera.sources.folders.number_rows import even_times_ns, read_times_ns
+from services.camera.sources.kitti.odometry import KittiOdometry, is_kitti_folder
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 

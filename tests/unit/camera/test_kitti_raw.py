@@ -7,10 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
-from services.camera.sources.image_files import list_images
-from services.camera.sources.kitti_oxts import imu_poses
-from services.camera.sources.kitti_raw import KittiRaw, drives_in, is_kitti_drive
-from services.camera.sources.kitti_tracking import KittiTracking, is_tracking_sequence, sequences_in
+from services.camera.sources.folders.image_files import list_images
+from services.camera.sources.kitti.oxts import imu_poses
+from services.camera.sources.kitti.raw import KittiRaw, drives_in, is_kitti_drive
+from services.camera.sources.kitti.tracking import KittiTracking, is_tracking_sequence, sequences_in
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 

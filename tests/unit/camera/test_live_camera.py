@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 import pytest
 
-from services.camera.sources.live_address import is_live, without_credentials
-from services.camera.sources.live_camera import LiveCamera
-from services.camera.sources.opencv_camera import assumed_calibration, open_live_camera
+from services.camera.sources.live.live_address import is_live, without_credentials
+from services.camera.sources.live.live_camera import LiveCamera
+from services.camera.sources.live.opencv_camera import assumed_calibration, open_live_camera
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 from tests.unit.camera.scripted_capture import BROKEN, SIZE, Cameras, ScriptedCapture

@@ -16,9 +16,9 @@ from google.protobuf.timestamp_pb2 import Timestamp
 from mcap.writer import Writer as McapWriter
 from mcap_protobuf.writer import Writer
 
-from services.camera.sources.mcap_file import open_mcap
-from services.camera.sources.message_source import MessageSource
-from services.camera.sources.message_topics import TopicOptions
+from services.camera.sources.recordings.mcap_file import open_mcap
+from services.camera.sources.recordings.message_source import MessageSource
+from services.camera.sources.recordings.message_topics import TopicOptions
 from services.camera.sources.source import Source, SourceFrame
 from services.runtime.errors import InputError
 from tests.unit.camera.bags import Ros

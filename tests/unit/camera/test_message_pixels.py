@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from services.camera.sources.message_log import CompressedPixels, RawPixels
-from services.camera.sources.message_pixels import depth_pixels, image_pixels
+from services.camera.sources.recordings.message_log import CompressedPixels, RawPixels
+from services.camera.sources.recordings.message_pixels import depth_pixels, image_pixels
 from services.runtime.errors import InputError
 
 BLUE, GREEN, RED = 10, 120, 230

@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from services.camera.sources.message_source import MessageSource
-from services.camera.sources.message_topics import TopicOptions
-from services.camera.sources.ros_bag import open_ros_bag
+from services.camera.sources.recordings.message_source import MessageSource
+from services.camera.sources.recordings.message_topics import TopicOptions
+from services.camera.sources.recordings.ros_bag import open_ros_bag
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
 from tests.unit.camera.bags import KINDS, Ros, Said

@@ -17,8 +17,8 @@ from schemas.records import FrameAnswer
 from services.camera.configured_delivery import require_realtime
 from services.camera.configured_source import open_configured_source
 from services.camera.service import CameraService
-from services.camera.sources.live_camera import LiveCamera
-from services.camera.sources.opencv_camera import assumed_calibration
+from services.camera.sources.live.live_camera import LiveCamera
+from services.camera.sources.live.opencv_camera import assumed_calibration
 from services.runtime.bus import Message
 from services.runtime.config import Config
 from services.runtime.config.camera import CameraConfig

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from services.camera.sources.association import nearest_pairs
+from services.camera.sources.folders.tum_rgbd import TumRgbd
 from services.camera.sources.source import SourceFrame
-from services.camera.sources.tum_rgbd import TumRgbd
 from services.runtime.errors import InputError
 
 SIZE = (32, 24)

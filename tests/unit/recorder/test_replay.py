@@ -12,7 +12,7 @@ from schemas.codec import encode
 from schemas.records import FrameAnswer
 from services.camera.configured_source import open_configured_source
 from services.camera.frame_records import frame_records
-from services.camera.sources.mcap_session import McapSession
+from services.camera.sources.recordings.mcap_session import McapSession
 from services.recorder.replay_pace import AsAnswered, RecordedRate
 from services.recorder.replayer import Replayer
 from services.recorder.session_writer import SessionWriter, WriterOptions

@@ -14,8 +14,8 @@ import pytest
 
 from schemas.categories import category_id
 from schemas.records import MotionState
-from services.camera.sources.depth_files import DepthFiles
-from services.camera.sources.kitti_odometry import KittiOdometry
+from services.camera.sources.folders.depth_files import DepthFiles
+from services.camera.sources.kitti.odometry import KittiOdometry
 from services.formats.coco import read_coco
 from services.formats.kitti_flow import read_kitti_flow
 from services.formats.kitti_poses import read_kitti_poses

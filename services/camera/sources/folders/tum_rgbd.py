@@ -11,10 +11,10 @@ from typing import Final
 
 from services.camera.sources.association import FARTHEST_NS, nearest_pairs
 from services.camera.sources.calibration_file import CameraModel, find_calibration, read_calibration
-from services.camera.sources.depth_files import DepthFiles
-from services.camera.sources.image_files import ListedImages
+from services.camera.sources.folders.depth_files import DepthFiles
+from services.camera.sources.folders.image_files import ListedImages
+from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, parse_time_ns, rate_of, read_lines
 from services.camera.sources.indexed_source import CameraImages, IndexedSource
-from services.camera.sources.number_rows import ASSUMED_RATE_HZ, parse_time_ns, rate_of, read_lines
 from services.camera.sources.true_path import note_of_missing, poses_at
 from services.formats.tum import read_tum
 from services.runtime.errors import InputError

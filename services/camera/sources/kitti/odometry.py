@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.image_files import ImageFiles
+from services.camera.sources.folders.image_files import ImageFiles
+from services.camera.sources.folders.number_rows import read_kitti_poses, times_of_folder
 from services.camera.sources.indexed_source import IndexedSource
-from services.camera.sources.kitti_pair import LEFT_NUMBERS, NumberedImages, calibrated_pair
-from services.camera.sources.number_rows import read_kitti_poses, times_of_folder
+from services.camera.sources.kitti.rectified_pair import LEFT_NUMBERS, NumberedImages, calibrated_pair
 
 
 def is_kitti_folder(folder: Path) -> bool:

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.euroc_sensor import EurocCamera, read_camera
-from services.camera.sources.image_files import ListedImages
+from services.camera.sources.folders.euroc_sensor import EurocCamera, read_camera
+from services.camera.sources.folders.image_files import ListedImages
+from services.camera.sources.folders.number_rows import rate_of, read_lines
+from services.camera.sources.folders.rectification import rectify
 from services.camera.sources.indexed_source import CameraImages, IndexedSource
-from services.camera.sources.number_rows import rate_of, read_lines
-from services.camera.sources.rectification import rectify
 from services.camera.sources.true_path import note_of_missing, poses_at
 from services.formats.euroc import read_euroc
 from services.runtime.errors import InputError

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.message_log import StaticTransform
+from services.camera.sources.recordings.message_log import StaticTransform
 
 Array = npt.NDArray[np.float64]
 

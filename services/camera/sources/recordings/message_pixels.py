@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.message_log import CompressedPixels, RawPixels
+from services.camera.sources.recordings.message_log import CompressedPixels, RawPixels
 from services.runtime.errors import InputError
 
 # bytes a value and values a pixel as they are stored, then OpenCV's conversion to blue-green-red, if any

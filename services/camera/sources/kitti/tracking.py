@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.image_files import ImageFiles, list_images
+from services.camera.sources.folders.image_files import ImageFiles, list_images
+from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, even_times_ns, read_lines
 from services.camera.sources.indexed_source import IndexedSource
-from services.camera.sources.kitti_extrinsics import KittiValues
-from services.camera.sources.kitti_oxts import parse_oxts, world_from_camera
-from services.camera.sources.kitti_pair import KittiPair, NumberedImages, calibrated_pair
-from services.camera.sources.number_rows import ASSUMED_RATE_HZ, even_times_ns, read_lines
+from services.camera.sources.kitti.extrinsics import KittiValues
+from services.camera.sources.kitti.oxts import parse_oxts, world_from_camera
+from services.camera.sources.kitti.rectified_pair import KittiPair, NumberedImages, calibrated_pair
 from services.runtime.errors import InputError
 
 LEFT, RIGHT = "image_02", "image_03"

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.image_header import IMAGE_SUFFIXES, read_image_size
+from services.camera.sources.folders.image_header import IMAGE_SUFFIXES, read_image_size
 from services.runtime.errors import InputError
 
 

@@ -4,9 +4,9 @@
 from pathlib import Path
 
 from services.camera.sources.calibration_file import CALIBRATION_NAMES, find_calibration, read_calibration
-from services.camera.sources.image_files import ImageFiles
+from services.camera.sources.folders.image_files import ImageFiles
+from services.camera.sources.folders.number_rows import times_of_folder
 from services.camera.sources.indexed_source import CameraImages, IndexedSource
-from services.camera.sources.number_rows import times_of_folder
 
 _IMAGES = "images"
 

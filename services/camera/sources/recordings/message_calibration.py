@@ -4,8 +4,8 @@
 import numpy as np
 
 from schemas.records import CameraCalibration
-from services.camera.sources.message_log import CameraInfo
-from services.camera.sources.message_topics import ChosenTopics
+from services.camera.sources.recordings.message_log import CameraInfo
+from services.camera.sources.recordings.message_topics import ChosenTopics
 from services.runtime.errors import InputError
 
 # plumb_bob's five are the first five of the rational model's eight.

@@ -10,10 +10,10 @@ from mcap.records import Header
 from mcap.summary import Summary
 
 from schemas import topics as kinemap_topics
-from services.camera.sources.foxglove_log import FoxgloveLog
-from services.camera.sources.mcap_session import McapSession
-from services.camera.sources.message_source import MessageSource
-from services.camera.sources.message_topics import TopicOptions
+from services.camera.sources.recordings.foxglove_log import FoxgloveLog
+from services.camera.sources.recordings.mcap_session import McapSession
+from services.camera.sources.recordings.message_source import MessageSource
+from services.camera.sources.recordings.message_topics import TopicOptions
 from services.camera.sources.source import Source
 from services.runtime.errors import InputError
 from services.runtime.session_scan import MAGIC
@@ -47,7 +47,7 @@ def open_mcap(path: Path, topics: TopicOptions, *, calibration: Path | None = No
         raise InputError(f"{path}: messages encoded as {found}, expected cdr (ROS 2) or protobuf (Foxglove)")
     beside = (path.with_suffix(".toml"), path.parent / "calibration.toml")
     if _ROS_2_ENCODING in encodings:
-        from services.camera.sources.ros_bag import RosBag
+        from services.camera.sources.recordings.ros_bag import RosBag
 
         return MessageSource(RosBag(path), topics, calibration=calibration, beside=beside)
     return MessageSource(FoxgloveLog(path), topics, calibration=calibration, beside=beside)

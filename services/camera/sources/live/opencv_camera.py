@@ -9,8 +9,8 @@ import numpy as np
 
 from schemas.records import CameraCalibration
 from services.camera.sources.calibration_file import find_calibration, read_calibration
-from services.camera.sources.live_address import device_number, without_credentials
-from services.camera.sources.live_camera import STREAM_TIMEOUT_MS, Capture, LiveCamera
+from services.camera.sources.live.live_address import device_number, without_credentials
+from services.camera.sources.live.live_camera import STREAM_TIMEOUT_MS, Capture, LiveCamera
 from services.camera.sources.opencv_log import silence_opencv
 
 ASSUMED_FIELD_OF_VIEW_DEG = 60.0

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from services.camera.sources.message_log import Kind, LoggedTopic, MessageLog
+from services.camera.sources.recordings.message_log import Kind, LoggedTopic, MessageLog
 from services.runtime.errors import InputError
 
 _OPTION_OF: dict[Kind, str] = {"image": "camera.topic", "info": "camera.info_topic", "pose": "camera.truth_topic"}

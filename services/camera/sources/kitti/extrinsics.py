@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.number_rows import parse_numbers, read_lines
+from services.camera.sources.folders.number_rows import parse_numbers, read_lines
 from services.runtime.errors import InputError
 
 Array = npt.NDArray[np.float64]

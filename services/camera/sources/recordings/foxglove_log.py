@@ -16,7 +16,7 @@ from foxglove_schemas_protobuf.PoseInFrame_pb2 import PoseInFrame
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from mcap.reader import make_reader
 
-from services.camera.sources.message_log import (
+from services.camera.sources.recordings.message_log import (
     CameraInfo,
     CompressedPixels,
     Kind,

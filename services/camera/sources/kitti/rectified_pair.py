@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from schemas.records import CameraCalibration
 from services.camera.sources.indexed_source import CameraImages, Images
-from services.camera.sources.kitti_calibration import camera_0_from, read_projections
+from services.camera.sources.kitti.calibration import camera_0_from, read_projections
 from services.runtime.errors import InputError
 
 # Colour first: the networks behind the camera were trained on it.

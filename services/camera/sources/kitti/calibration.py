@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.number_rows import parse_numbers, read_lines
+from services.camera.sources.folders.number_rows import parse_numbers, read_lines
 from services.runtime.errors import InputError
 
 # P2 in the benchmarks' calib.txt, P_rect_02 in the raw recordings' calib_cam_to_cam.txt.

@@ -14,7 +14,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 from schemas.codec.rigid import matrix_from_pose
-from services.camera.sources.message_log import (
+from services.camera.sources.recordings.message_log import (
     CameraInfo,
     CompressedPixels,
     Kind,
@@ -24,8 +24,8 @@ from services.camera.sources.message_log import (
     RawPixels,
     StaticTransform,
 )
-from services.camera.sources.message_source import MessageSource
-from services.camera.sources.message_topics import TopicOptions
+from services.camera.sources.recordings.message_source import MessageSource
+from services.camera.sources.recordings.message_topics import TopicOptions
 from services.runtime.errors import InputError, KinemapError
 
 _KINDS: Final = MappingProxyType[str, Kind]({

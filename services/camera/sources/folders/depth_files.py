@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.image_header import read_image_size
+from services.camera.sources.folders.image_header import read_image_size
 from services.formats.png import read_png
 from services.runtime.errors import InputError
 

@@ -11,13 +11,13 @@ from schemas.codec.rigid import matrix_from_pose
 from schemas.records import CameraCalibration
 from services.camera.sources.association import FARTHEST_NS, nearest_pairs
 from services.camera.sources.calibration_file import find_calibration, read_calibration
-from services.camera.sources.frame_tree import FrameTree
+from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, rate_of
 from services.camera.sources.indexed_source import CameraImages, IndexedSource, Pose
-from services.camera.sources.message_calibration import calibration_of
-from services.camera.sources.message_log import LoggedMessage, MessageLog
-from services.camera.sources.message_pixels import depth_pixels, image_pixels
-from services.camera.sources.message_topics import ChosenTopics, TopicOptions, choose_topics
-from services.camera.sources.number_rows import ASSUMED_RATE_HZ, rate_of
+from services.camera.sources.recordings.frame_tree import FrameTree
+from services.camera.sources.recordings.message_calibration import calibration_of
+from services.camera.sources.recordings.message_log import LoggedMessage, MessageLog
+from services.camera.sources.recordings.message_pixels import depth_pixels, image_pixels
+from services.camera.sources.recordings.message_topics import ChosenTopics, TopicOptions, choose_topics
 from services.camera.sources.true_path import note_of_missing, poses_at
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError

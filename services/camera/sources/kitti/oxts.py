@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.camera.sources.number_rows import parse_numbers
+from services.camera.sources.folders.number_rows import parse_numbers
 from services.runtime.errors import InputError
 
 COLUMNS = 30
