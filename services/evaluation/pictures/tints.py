@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 Picture = npt.NDArray[np.uint8]
 
-_NEAR_M, _FAR_M = 3.0, 80.0
+_NEAR_M, _FAR_M = 1.5, 80.0
 _SKY, _NOBODY = 235, 30
 _GREEN, _RED = (60, 170, 40), (40, 40, 225)
 _TINT = 0.6
@@ -20,9 +20,8 @@ _GOLDEN = 0.618034
 
 
 def depth_colours(depth_m: npt.NDArray[np.float32]) -> Picture:
-    """Picture (H, W, 3), blue-green-red, of a depth (H, W): by its inverse, red is near and blue far; sky is pale."""
-    inverse = 1.0 / np.clip(depth_m, _NEAR_M, _FAR_M)
-    share = np.sqrt((inverse - 1.0 / _FAR_M) / (1.0 / _NEAR_M - 1.0 / _FAR_M))
+    """Picture (H, W, 3), blue-green-red, of a depth (H, W): by its logarithm, red is near and blue far; sky is pale."""
+    share = np.log(_FAR_M / np.clip(depth_m, _NEAR_M, _FAR_M)) / np.log(_FAR_M / _NEAR_M)
     picture: Picture = np.asarray(cv2.applyColorMap(np.rint(share * 255.0).astype(np.uint8), cv2.COLORMAP_TURBO))
     picture[depth_m <= 0.0] = _SKY
     return picture
