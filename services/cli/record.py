@@ -15,6 +15,9 @@ from rich.console import Console
 from schemas import topics
 from schemas.codec import encode
 from schemas.records import EndOfInput
+from services.camera.prefetch import Prefetch
+from services.camera.sources.live.live_address import is_live, without_credentials
+from services.camera.sources.source import Source
 from services.cli.flags import ConfigFlag, InputArgument, Overrides, SetFlag, resolve_config
 from services.recorder.recorded_key import key_of
 from services.recorder.session_writer import SessionWriter, WriterOptions
@@ -64,30 +67,58 @@ def record(
                 f"listening on {where} until the input's end or Ctrl-C", highlight=False, soft_wrap=True
             )
             count = _write(file, resolved, messages_of_bus(subscription, resolved, stop))
+        if not count:
+            raise InputError(f"--file {file}: nothing to record was heard; is `kinemap up` running on this bus?")
     else:
+        if is_live(resolved.camera.input):
+            what = without_credentials(resolved.camera.input)
+            Console(markup=False).print(f"recording {what} until Ctrl-C", highlight=False, soft_wrap=True)
         count = _write(file, resolved, messages_of_input(resolved, stop))
+        if not count:
+            raise InputError(f"--file {file}: stopped before the first frame, nothing was recorded")
     Console(markup=False).print(f"{file}: {count} messages", highlight=False, soft_wrap=True)
 
 
 def messages_of_input(config: Config, stop: threading.Event) -> Messages:
-    """What the camera service would publish of the configured input, then the end of input."""
+    """What the camera service would publish of the configured input, then the end of input; until `stop` at the latest.
+
+    Raises InputError, after the end of what went before, for a frame that cannot be used.
+    """
     from services.camera.configured_source import open_configured_source
-    from services.camera.frame_records import frame_records
 
     source = open_configured_source(config)
     try:
-        sequence, timestamp_ns = 0, -1
-        while not stop.is_set() and (frame := source.frame(sequence)) is not None:
-            timestamp_ns = frame.timestamp_ns
-            for topic, frame_record in frame_records(frame, source):
-                payload = encode(topic, frame_record)
-                yield config.run.session, RecordedMessage(topic.key, sequence, timestamp_ns, payload)
-            sequence += 1
-        end = EndOfInput(timestamp_ns + 1, sequence)
-        payload = encode(topics.END, end)
-        yield config.run.session, RecordedMessage(topics.END.key, sequence, end.timestamp_ns, payload)
+        with Prefetch(source, 0, lambda _: None) as ahead:
+            try:
+                yield from _messages_of(source, ahead, config.run.session, stop)
+            finally:
+                if is_live(config.camera.input):
+                    # Its next frame may never come, and nobody leaves while one is read.
+                    source.close()
+            if ahead.failure is not None:
+                raise ahead.failure
     finally:
         source.close()
+
+
+def _messages_of(source: Source, ahead: Prefetch, session: str, stop: threading.Event) -> Messages:
+    from services.camera.frame_records import frame_records
+
+    sequence, timestamp_ns = 0, -1
+    while not stop.is_set():
+        if not ahead.has_next(_LISTEN_S):
+            yield None
+            continue
+        frame = ahead.next()
+        if frame is None:
+            break
+        timestamp_ns = frame.timestamp_ns
+        for topic, frame_record in frame_records(frame, source):
+            yield session, RecordedMessage(topic.key, sequence, timestamp_ns, encode(topic, frame_record))
+        sequence += 1
+    if sequence:
+        end = EndOfInput(timestamp_ns + 1, sequence)
+        yield session, RecordedMessage(topics.END.key, sequence, end.timestamp_ns, encode(topics.END, end))
 
 
 def messages_of_bus(subscription: Subscription, config: Config, stop: threading.Event) -> Messages:
@@ -110,29 +141,34 @@ def messages_of_bus(subscription: Subscription, config: Config, stop: threading.
 
 
 def _write(file: Path, config: Config, messages: Messages) -> int:
-    """Write chunk by chunk; what was written stays readable whatever ends it."""
+    """Write chunk by chunk; what was written stays readable whatever ends it, and is whole when the input is bad."""
     options = WriterOptions(config.recorder.zstd_level, config.recorder.reserve_mb << 20)
     config_json = json.dumps(dump_config(config), sort_keys=True)
     writer: SessionWriter | None = None
+    failure: InputError | None = None
     chunk: list[RecordedMessage] = []
     size, count, begun_s = 0, 0, time.monotonic()
     try:
-        for message in messages:
-            if message is not None:
-                session, recorded = message
-                writer = writer or SessionWriter(file, session, config_json, options)
-                chunk.append(recorded)
-                size += len(recorded.payload)
-                count += 1
-            now_s = time.monotonic()
-            if writer is not None and chunk and (size >= _CHUNK_BYTES or now_s - begun_s >= _CHUNK_S):
-                writer.append(chunk)
-                chunk, size, begun_s = [], 0, now_s
-        if writer is None:
-            raise InputError(f"--file {file}: nothing to record was heard; is `kinemap up` running on this bus?")
-        writer.append(chunk)
-        writer.finish()
+        try:
+            for message in messages:
+                if message is not None:
+                    session, recorded = message
+                    writer = writer or SessionWriter(file, session, config_json, options)
+                    chunk.append(recorded)
+                    size += len(recorded.payload)
+                    count += 1
+                now_s = time.monotonic()
+                if writer is not None and chunk and (size >= _CHUNK_BYTES or now_s - begun_s >= _CHUNK_S):
+                    writer.append(chunk)
+                    chunk, size, begun_s = [], 0, now_s
+        except InputError as error:
+            failure = error
+        if writer is not None:
+            writer.append(chunk)
+            writer.finish()
     finally:
         if writer is not None:
             writer.close()
+    if failure is not None:
+        raise failure
     return count
