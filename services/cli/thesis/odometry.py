@@ -66,7 +66,7 @@ def make_tables(
     plan: list[PlannedRun], output: BenchOutput, frames: int | None, jobs: int = 1, runner: Runner | None = None
 ) -> None:
     """Do the runs, then write tables and pictures of those there are, whatever ended the runs. Raises as run_bench."""
-    from services.evaluation.bench.file import read_bench
+    from services.evaluation.bench.file import BENCH_NAME, read_bench
 
     before: BaseException | None = None
     try:
@@ -74,6 +74,8 @@ def make_tables(
     except (InputError, ResourceError):
         raise  # nothing was run
     except BaseException as error:
+        if not (output.folder / BENCH_NAME).is_file():
+            raise
         before = error
     done = read_bench(output.folder).runs
     if done:

@@ -3,6 +3,7 @@
 
 `{training,testing}/images/NAME.png`, `mask/NAME.png` and `boxes/NAME.txt`, where NAME is a drive and its frame. A mask
 is 0 where there is no car. A line of boxes is `id moving y1 x1 y2 x2 [class ...]`: moving 1 or 0, the corners in px.
+The fields are those that the extended release documents; readers of the first one agree on the corners.
 """
 
 from dataclasses import dataclass

@@ -121,3 +121,13 @@ def test_a_sequence_without_masks_is_refused(kinemap: Any, tmp_path: Path) -> No
     (folder / "instances").rename(folder / "elsewhere")
     ended = kinemap("thesis", "features", "--data", "kitti", "--sequences", "05", "--out", "out")
     ended.is_one_line("sequences/05: no instances/")
+
+
+def test_a_real_sequence_has_its_features_on_both_sides(shared_data: Path, kinemap: Any, tmp_path: Path) -> None:
+    data = shared_data / "kitti"
+    ended = kinemap("thesis", "features", "--data", data, "--sequences", "03", "--frames", "3", "--out", "out")
+    assert ended.code == 0, ended.err
+    found = json.loads((tmp_path / "out" / "features.json").read_text())["03"]
+    assert found["skew"]["all features"]["features"] == 2000.0
+    assert found["skew"]["all features"]["mean_absolute"] < 0.2
+    assert found["skew"]["without moving objects"]["mean"] is None
