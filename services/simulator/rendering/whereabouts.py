@@ -45,7 +45,7 @@ class Whereabouts:
         """Positions (A, 2) at one even time."""
         first = step - step % _STEPS
         if first != self._first_step:
-            t_s = (first + np.arange(_STEPS)) * _STEP_S
+            t_s = _STEP_S * np.arange(first, first + _STEPS, dtype=np.float64)
             found = [actor.path.point(actor.speed.distance_m(t_s))[:, :2] for actor in self._actors]
             self._first_step, self._positions = first, np.array(found, np.float64).reshape(-1, _STEPS, 2)
         return self._positions[:, step - first]
