@@ -24,6 +24,7 @@ from services.recorder.session_writer import SessionWriter, WriterOptions
 from services.runtime.bus import Subscription
 from services.runtime.config import Config, dump_config
 from services.runtime.errors import InputError
+from services.runtime.log import get_logger, set_up_logging
 from services.runtime.session_file import RecordedMessage
 from services.runtime.zenoh_bus import ZenohBus
 
@@ -56,6 +57,7 @@ def record(
     resolved = resolve_config(config, settings, flags)
     if file.exists():
         raise InputError(f"--file {file}: exists, expected the name of a new file")
+    set_up_logging(resolved.log)
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
@@ -87,6 +89,8 @@ def messages_of_input(config: Config, stop: threading.Event) -> Messages:
     from services.camera.configured_source import open_configured_source
 
     source = open_configured_source(config)
+    for note in source.notes:
+        get_logger("camera").warning("assumed", note=note)
     try:
         with Prefetch(source, 0, lambda _: None) as ahead:
             try:

@@ -65,20 +65,27 @@ def _folder(path: Path, frames: int) -> Path:
     return path
 
 
-def _keep_signals(monkeypatch: pytest.MonkeyPatch) -> None:
+def _keep_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the command sets for its process stays out of the tests'."""
     monkeypatch.setattr(signal, "signal", lambda *_: None)
+    monkeypatch.setattr(record_command, "set_up_logging", lambda _: None)
 
 
-def test_what_came_before_a_broken_image_is_recorded_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_came_before_a_broken_image_is_recorded_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
     folder = _folder(tmp_path / "drive", 4)
     broken = folder / "002.png"
     broken.write_bytes(broken.read_bytes()[:200])
     file = tmp_path / "a.mcap"
-    _keep_signals(monkeypatch)
-    with pytest.raises(InputError, match=f"image {broken}: not a readable image"):
+    _keep_process(monkeypatch)
+    with caplog.at_level("WARNING"), pytest.raises(InputError, match=f"image {broken}: not a readable image"):
         record(str(folder), file, settings=["run.session=made-up"])
     with SessionFile(file) as session:
         assert not session.recovered
         assert session.message_counts()[topics.IMAGE.key] == 2
         (end,) = session.messages([topics.END.key])
         assert decode(topics.END, end.payload).frame_count == 2
+    assert [entry.fields["note"] for entry in caplog.records if entry.message == "assumed"] == [  # type: ignore[attr-defined]
+        "no times.txt in drive: times are assumed at 10 Hz"
+    ]
