@@ -68,7 +68,7 @@ def _folder(path: Path, frames: int) -> Path:
 def _keep_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the command sets for its process stays out of the tests'."""
     monkeypatch.setattr(signal, "signal", lambda *_: None)
-    monkeypatch.setattr(record_command, "set_up_logging", lambda _: None)
+    monkeypatch.setattr("services.cli.record.set_up_logging", lambda _: None)
 
 
 def test_what_came_before_a_broken_image_is_recorded_whole(
