@@ -19,7 +19,7 @@ BOARDS = 8
 POSTERS = 10
 MURALS = 3
 TOWN_SIGNS = 6
-ARROWS = 3
+ARROWS = 2
 PAVINGS = ("paving", "setts_grey", "setts_red")
 TOWN_ROOFS = ("roof_red", "roof_brown", "roof_grey", "roof_slate", "roof_moss")
 

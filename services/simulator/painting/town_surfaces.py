@@ -121,15 +121,15 @@ def lamp_glass(rng: np.random.Generator, size: int = 32) -> Image:
 
 
 def arrow(rng: np.random.Generator, kind: int, size: int = 128) -> Image:
-    """Lane arrow on asphalt, pointing to u = 1: ahead (0), ahead and right (1), left (2); 5 m long, 2 m wide."""
+    """Lane arrow on asphalt, 4.5 m by 2.2 m: ahead (0), ahead and right (1). u leads ahead, v to the left."""
+    mask = np.zeros((220, 450), np.uint8)
+    ways = [((20, 110), (350, 110)), ((150, 110), (280, 52))]
+    for start, end in ways[: kind + 1]:
+        cv2.line(mask, start, end, 255, 18)
+        way = np.array(end, np.float64) - start
+        ahead, aside = way / np.linalg.norm(way), np.array([-way[1], way[0]]) / np.linalg.norm(way)
+        cv2.fillConvexPoly(mask, np.rint([end + 32 * aside, end - 32 * aside, end + 75 * ahead]).astype(np.int32), 255)
+    paint = cv2.resize(mask, (size, size), interpolation=cv2.INTER_AREA).astype(np.float32)[..., None] / 255.0
     canvas = coloured(noise(rng, size, size, [(10, 8.0), (50, 10.0)]), (104.0, 102.0, 100.0))
-    white = (214.0, 216.0, 216.0)
-    cv2.line(canvas, (6, 64), (70 if kind == 2 else 88, 64), white, 12)
-    if kind != 2:
-        cv2.fillPoly(canvas, [np.array([[84, 40], [84, 88], [124, 64]])], white)
-    if kind:
-        side = -1 if kind == 1 else 1
-        cv2.line(canvas, (50, 64), (76, 64 - 30 * side), white, 12)
-        tip = np.array([[58, 64 - 30 * side], [94, 64 - 18 * side], [92, 64 - 56 * side]])
-        cv2.fillPoly(canvas, [tip], white)
+    canvas = canvas * (1.0 - paint) + np.array([214.0, 216.0, 216.0], np.float32) * paint
     return to_image(canvas + noise(rng, size, size, [(40, 16.0)])[..., None])

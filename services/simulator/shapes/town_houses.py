@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from services.simulator.painting.shopfronts import SHOP_M
 from services.simulator.painting.storeys import STOREY_M
@@ -65,10 +66,10 @@ def flats_mesh(rng: np.random.Generator, size_m: Size, storeys: int, *, wall: Wa
     ]
     bays = round(size_m[0] / BAY_M)
     railing = texture[str(rng.choice(["railing_white", "railing_green"]))]
-    columns = range(int(rng.integers(0, 2)), bays, int(rng.integers(2, 4)))
-    for bay in columns:
+    balcony = _balcony(railing, texture)
+    for bay in range(int(rng.integers(0, 2)), bays, int(rng.integers(2, 4))):
         x = -0.5 * size_m[0] + (bay + 0.5) * BAY_M
-        pieces += [_balcony(x, PLINTH_M + storey * STOREY_M, railing, texture) for storey in range(1, storeys)]
+        pieces += [balcony.transformed(_moved(x, 0.0, PLINTH_M + k * STOREY_M)) for k in range(1, storeys)]
     x = float(rng.uniform(-0.3, 0.3)) * size_m[0]
     pieces.append(box((3.4, 1.6, 0.2), (x, 0.8, 2.95), texture["plain_grey_panels"], 3.0))
     return merged(pieces)
@@ -130,9 +131,9 @@ def church_mesh(texture: Textures, style: str, roof: str) -> Mesh:
     return merged(parts)
 
 
-def _moved(x: float, y: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+def _moved(x: float, y: float, z: float = 0.0) -> NDArray[np.float64]:
     matrix = np.eye(4)
-    matrix[:2, 3] = x, y
+    matrix[:3, 3] = x, y, z
     return matrix
 
 
@@ -154,17 +155,16 @@ def _bay(x: float, wall: Wall, roof: int, texture: Textures) -> Mesh:
     return merged([body, window, lid])
 
 
-def _balcony(x: float, floor_m: float, railing: int, texture: Textures) -> Mesh:
-    """Slab and railing, 2.6 m wide and 1.2 m deep."""
-    slab = box((2.6, 1.2, 0.16), (x, 0.6, floor_m), texture["plain_grey_panels"], 3.0)
-    a, b, low, high = x - 1.3, x + 1.3, floor_m + 0.08, floor_m + 1.05
+def _balcony(railing: int, texture: Textures) -> Mesh:
+    """Slab and railing, 2.6 m wide and 1.2 m deep, its floor at z = 0."""
+    slab = box((2.6, 1.2, 0.16), (0.0, 0.6, 0.0), texture["plain_grey_panels"], 3.0)
+    a, b, low, high = -1.3, 1.3, 0.08, 1.05
     faces = [
         [[a, 1.2, high], [b, 1.2, high], [b, 1.2, low], [a, 1.2, low]],
         [[a, 0.0, high], [a, 1.2, high], [a, 1.2, low], [a, 0.0, low]],
         [[b, 0.0, high], [b, 1.2, high], [b, 1.2, low], [b, 0.0, low]],
     ]
-    uv = [stretch(w, 1) for w in (1.3, 0.6, 0.6)]
-    return merged([slab, quads(faces, uv, railing)])
+    return merged([slab, quads(faces, [stretch(width) for width in (1.3, 0.6, 0.6)], railing)])
 
 
 def _awning(rng: np.random.Generator, width_m: float, texture: Textures) -> Mesh:

@@ -66,10 +66,13 @@ class Drape:
         tint: Tint = WHITE,
         base_m: float = 0.0,
     ) -> Mesh:
-        """Flat rectangles of one size, along and across the line, at (s, n) places (M, 2); whole texture on each."""
+        """Flat rectangles of one size, along and across the line, at (s, n) places (M, 2); whole texture on each.
+
+        A negative size turns the texture round along that side.
+        """
         at = np.asarray(at, np.float64).reshape(-1, 2)
-        rows = max(1, int(np.ceil(size_m[0] / _MARK_STEP_M)))
-        columns = max(1, int(np.ceil(size_m[1] / _MARK_STEP_M)))
+        rows = max(1, int(np.ceil(abs(size_m[0]) / _MARK_STEP_M)))
+        columns = max(1, int(np.ceil(abs(size_m[1]) / _MARK_STEP_M)))
         u, v = np.linspace(0.0, 1.0, rows + 1), np.linspace(0.0, 1.0, columns + 1)
         s = at[:, 0, None, None] + (u[None, :, None] - 0.5) * size_m[0]
         n = at[:, 1, None, None] + (v[None, None, :] - 0.5) * size_m[1]

@@ -55,7 +55,8 @@ class HouseRow:
         self._site, self._rng, self._texture = site, rng, texture
         self._shops = rng.permutation(SHOPS).tolist()
         self._murals = rng.permutation(MURALS).tolist()
-        self._built = 0
+        kinds = ("leaves_olive", "leaves_dark", "leaves_light")
+        self._shrubs = [trees.shrub(rng, leaves, texture) for leaves in kinds for _ in range(3)]
 
     def build(self, frontage: Frontage) -> list[Mesh]:
         """Houses from one end to the other, with what belongs into their gardens."""
@@ -101,7 +102,6 @@ class HouseRow:
 
     def _house(self, pose: Floats, lot: _Lot, frontage: Frontage, setback_m: float) -> list[Mesh]:
         rng, texture, character = self._rng, self._texture, frontage.character
-        self._built += 1
         tone = rng.uniform(0.9, 1.06, 3) * rng.uniform(0.82, 1.0)
         tint: Tint = (float(tone[0]), float(tone[1]), float(tone[2]))
         joined = MIXES[character.mix].gap_m[1] == 0.0
@@ -142,10 +142,10 @@ class HouseRow:
         pieces: list[Mesh] = []
         if setback_m > 1.6:
             for _ in range(int(rng.integers(1, 4))):
-                leaves = str(rng.choice(["leaves_olive", "leaves_dark", "leaves_light"]))
                 at = np.eye(4)
                 at[:2, 3] = rng.uniform(-0.45, 0.45) * lot.width_m, rng.uniform(0.7, max(0.8, setback_m - 1.6))
-                pieces.append(trees.shrub(rng, leaves, texture).transformed(at))
+                at[:2, :2] *= rng.choice([-1.0, 1.0], 2) * rng.uniform(0.85, 1.1)
+                pieces.append(self._shrubs[int(rng.integers(0, len(self._shrubs)))].transformed(at))
         if setback_m > 2.2 and lot.kind != "flats":
             length = 0.5 * lot.width_m - 0.7
             for x in (-0.25 * lot.width_m - 0.35, 0.25 * lot.width_m + 0.35):

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -43,6 +44,7 @@ class Furniture:
         grown = trees.tree_kinds(texture)
         self._trees = {name: [grow(rng) for _ in range(_VARIANTS)] for name, grow in grown.items()}
         self._posters = rng.permutation(POSTERS).tolist()
+        self._made: dict[str, Mesh] = {}
         self._lamps = {"tall_lamp": street_things.tall_lamp(texture), "lantern": street_things.lantern(texture)}
 
     def along(self, frontage: Frontage) -> list[Mesh]:
@@ -65,6 +67,12 @@ class Furniture:
         tone = rng.uniform(0.88, 1.12, 3)
         variant = self._trees[kind][int(rng.integers(0, _VARIANTS))]
         return variant.transformed(pose @ turn).tinted((float(tone[0]), float(tone[1]), float(tone[2])))
+
+    def _once(self, name: str, make: Callable[[], Mesh]) -> Mesh:
+        """A thing of which all specimens are equal."""
+        if name not in self._made:
+            self._made[name] = make()
+        return self._made[name]
 
     def _pose(self, frontage: Frontage, s: float, behind_kerb_m: float, yaw: float = 0.0) -> Floats:
         n = frontage.side * (frontage.kerb_m + behind_kerb_m)
@@ -115,7 +123,8 @@ class Furniture:
             name = f"sign_{number}" if number < SIGN_COUNT else f"town_sign_{number - SIGN_COUNT}"
             pose = self._pose(frontage, s, 0.5)
             if self._clear(pose, 0.45):
-                pieces.append(street_things.board_on_post(name, self._texture).transformed(pose))
+                board = self._once(name, partial(street_things.board_on_post, name, self._texture))
+                pieces.append(board.transformed(pose))
         return pieces
 
     def _bus_stop(self, frontage: Frontage) -> list[Mesh]:
@@ -144,17 +153,17 @@ class Furniture:
             at_back = self._pose(frontage, s, back + _BACK_SIDE_M, float(rng.uniform(-0.08, 0.08)))
             at_kerb = self._pose(frontage, s, _KERB_SIDE_M + 0.05)
             if choice < 0.3:
-                thing, pose = bin_mesh(texture), self._pose(frontage, s, back + 0.45)
+                thing, pose = self._once("bin", partial(bin_mesh, texture)), self._pose(frontage, s, back + 0.45)
             elif choice < 0.42:
-                thing, pose, reach_m = street_things.bench(texture), at_back, 1.2
+                thing, pose, reach_m = self._once("bench", partial(street_things.bench, texture)), at_back, 1.2
             elif choice < 0.54:
-                thing, pose = street_things.litter_bin(texture), at_kerb
+                thing, pose = self._once("litter_bin", partial(street_things.litter_bin, texture)), at_kerb
             elif choice < 0.62:
-                thing, pose = street_things.hydrant(texture), at_kerb
+                thing, pose = self._once("hydrant", partial(street_things.hydrant, texture)), at_kerb
             elif choice < 0.72:
-                thing, pose = street_things.cabinet(texture), at_back
+                thing, pose = self._once("cabinet", partial(street_things.cabinet, texture)), at_back
             elif choice < 0.78:
-                thing, pose = street_things.letter_box(texture), at_back
+                thing, pose = self._once("letter_box", partial(street_things.letter_box, texture)), at_back
             elif choice < 0.84:
                 posters = (self._poster(), self._poster(), self._poster())
                 thing = street_things.advertising_column(posters, texture)

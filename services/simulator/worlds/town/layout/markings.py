@@ -114,11 +114,10 @@ class Markings:
             s = crossing.s_m - direction * 18.0
             if not len(self._free(np.array([s]), CROSSING_CLEAR_M, ZEBRA_CLEAR_M)):
                 continue
-            for lane, kind in zip(LANE_CENTRES_M, (2 if left else 0, 1 if right else 0), strict=True):
-                mark = self._marks(
-                    _places(np.array([s]), -direction * lane), (direction * 4.5, direction * 1.7), f"arrow_{kind}"
-                )
-                pieces.append(mark)
+            for lane, arm, hand in zip(LANE_CENTRES_M, (left, right), (-1.0, 1.0), strict=True):
+                size = (direction * 4.5, direction * hand * 2.2)
+                place = _places(np.array([s]), -direction * lane)
+                pieces.append(self._marks(place, size, "arrow_1" if arm else "arrow_0"))
         return pieces
 
     def _wear(self) -> list[Mesh]:
