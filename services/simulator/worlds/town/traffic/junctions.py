@@ -126,7 +126,7 @@ class Junction:
             self.site.close(state, rows, now_s, ways)
 
     def _has_room(self, state: VehicleState, row: int, *, slow_only: bool = False) -> bool:
-        """Whether the way that a vehicle wants to take is free at its end; slow_only: of those who will be there yet."""
+        """Whether the way that a vehicle wants to take is free at its end; slow_only: of those who stay."""
         link = self._link(state, row)
         target, x_m = state.on_track(link.to)
         counts = (target != row) & ((state.speed_m_s[target] < _SLOW_M_S) | (not slow_only))

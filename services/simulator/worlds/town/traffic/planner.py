@@ -37,8 +37,6 @@ Floats = NDArray[np.float64]
 _SPARE_S = 2.0
 """Simulated beyond the last frame."""
 _CAMERA_SWAY = Sway(0.12, 125.0, 0.0)
-_FAR_M = 200.0
-"""Who is never nearer to the camera than this is left out; parked cars are not."""
 
 
 def plan_traffic(options: DriveOptions, plan: TownPlan, texture: Mapping[str, int]) -> tuple[list[Actor], CarCamera]:

@@ -129,22 +129,22 @@ class VehicleState:
         ahead[last] = first[track[last]]
         away = arc[np.minimum(ahead, len(row) - 1)] - arc
         away[last] += self.tracks.round_arc_m[track[last]]
-        for place in last[~self.tracks.closed[track[last]]]:
-            self._look_beyond(int(place), row, track, first, ahead, away, arc)
+        for place in last[~self.tracks.closed[track[last]]].tolist():
+            begin = self._first_beyond(int(row[place]), int(track[place]), first)
+            ahead[place], away[place] = place, np.inf
+            if begin >= 0:
+                ahead[place] = begin
+                away[place] = self.tracks.length_m[track[place]] - arc[place] + arc[begin]
         gap = away - 0.5 * (self.length_m[row] + self.length_m[row[ahead]])
         alone = np.isinf(gap) | (ahead == np.arange(len(row)))
         leader = np.where(alone, row, row[ahead])
         return Order(row, track, arc, np.where(alone, np.inf, gap), leader, first)
 
-    def _look_beyond(
-        self, place: int, row: Ints, track: Ints, first: Ints, ahead: Ints, away: Floats, arc: Floats
-    ) -> None:
-        """Who is first on an open track follows the last one on the next track of his route."""
-        away[place], ahead[place] = np.inf, place
-        route = self.routes[row[place]]
-        if track[place] != self.track[row[place]] or not route or route[0] < LOOP_TRACKS:
-            return
+    def _first_beyond(self, row: int, track: int, first: Ints) -> int:
+        """Place of who is first on the next track of a vehicle's route, whom it follows from the end of an open track;
+        -1: nobody."""
+        route = self.routes[row]
+        if track != self.track[row] or not route or route[0] < LOOP_TRACKS:
+            return -1
         begin, end = first[route[0]], first[route[0] + 1]
-        if end > begin:
-            ahead[place] = begin
-            away[place] = self.tracks.length_m[track[place]] - arc[place] + arc[begin]
+        return int(begin) if end > begin else -1
