@@ -42,7 +42,7 @@ def instances(
     from services.cli.thesis.segmenter_run import TimedSegmenter, open_segmenter
     from services.evaluation.instance_masks.plots import plot_precision_by_iou
     from services.evaluation.thesis.instances import describe_instances, instances_table, side_by_side
-    from services.evaluation.thesis.kitti_semantic import CITYSCAPES_IDS, semantic_frames
+    from services.formats.kitti_semantic import CITYSCAPES_IDS, semantic_frames
 
     if category not in CITYSCAPES_IDS:
         raise InputError(f"--category {category}: expected one of {', '.join(CITYSCAPES_IDS)}")

@@ -7,8 +7,8 @@ from schemas.categories import category_id
 from services.cli.thesis.segmenter_run import TimedSegmenter, read_image
 from services.evaluation.progress import Progress, silent
 from services.evaluation.thesis.instances import SegmenterScore, score_segmenter
-from services.evaluation.thesis.kitti_semantic import SemanticFrame, annotations, read_instances
 from services.formats.coco import CocoAnnotation, CocoImage, CocoResult
+from services.formats.kitti_semantic import SemanticFrame, annotations, read_instances
 from services.formats.rle import encode_mask
 from services.runtime.errors import InputError
 

@@ -40,8 +40,8 @@ def moseg(
     are 0 background, 1 a car that stands, 2 one that moves; scored is the IoU of each and their mean.
     """
     from services.evaluation.moving_masks.score import score_moving_masks
-    from services.evaluation.thesis.kitti_moseg import moseg_frames
     from services.evaluation.thesis.moseg import derive_masks, describe_moseg, moseg_table
+    from services.formats.kitti_moseg import moseg_frames
 
     frames = moseg_frames(data, split)
     if predictions is not None and not predictions.is_dir():

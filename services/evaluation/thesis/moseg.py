@@ -13,9 +13,9 @@ from services.evaluation.moving_masks.score import FlagRules, MovingMaskResult
 from services.evaluation.moving_masks.table import describe_moving
 from services.evaluation.progress import Progress, silent
 from services.evaluation.run.outcome import Report
-from services.evaluation.thesis.kitti_moseg import MosegFrame, read_boxes, read_cars
 from services.evaluation.thesis.moving_cars import moving_cars
 from services.evaluation.thesis.published import THESIS_MOVING_MEAN_IOU
+from services.formats.kitti_moseg import MosegFrame, read_boxes, read_cars
 from services.formats.png import write_png
 
 

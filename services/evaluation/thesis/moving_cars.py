@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.evaluation.moving_masks.iou import MaskClass
-from services.evaluation.thesis.kitti_moseg import MovingBox
+from services.formats.kitti_moseg import MovingBox
 
 COVERED = 0.5
 """share of a piece's pixels that a box has to cover to be its car's"""

@@ -11,7 +11,7 @@ import pytest
 from schemas.records import Image, Instance, Instances
 from services.cli.thesis.instances_score import score_on_kitti
 from services.cli.thesis.segmenter_run import TimedSegmenter
-from services.evaluation.thesis.kitti_semantic import semantic_frames
+from services.formats.kitti_semantic import semantic_frames
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 from services.formats.png import write_png
 from services.segmenter.backend import FrameContext

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from services.evaluation.moving_masks.iou import MaskClass
-from services.evaluation.thesis.kitti_moseg import MovingBox, moseg_frames, read_boxes, read_cars
 from services.evaluation.thesis.moseg import derive_masks
 from services.evaluation.thesis.moving_cars import moving_cars
+from services.formats.kitti_moseg import MovingBox, moseg_frames, read_boxes, read_cars
 from services.formats.png import read_png, write_png
 from services.runtime.errors import InputError
 

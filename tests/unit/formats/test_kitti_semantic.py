@@ -8,8 +8,8 @@ import pytest
 
 from schemas.categories import category_id
 from services.evaluation.thesis.instances import describe_instances, gain_percent, instances_table, score_segmenter
-from services.evaluation.thesis.kitti_semantic import annotations, read_instances, semantic_frames
 from services.formats.coco import CocoImage, CocoResult
+from services.formats.kitti_semantic import annotations, read_instances, semantic_frames
 from services.formats.png import write_png
 from services.formats.rle import decode_mask, encode_mask
 from services.runtime.errors import InputError
