@@ -17,7 +17,7 @@ from services.simulator.camera.timeline import Timeline
 from services.simulator.frame import SimulatedFlow, SimulatedFrame
 from services.simulator.options import DriveOptions
 from services.simulator.rendering.bands import Bands
-from services.simulator.rendering.flow import MovedTriangles, View, flow_between
+from services.simulator.rendering.flow import FlowTruth, MovedTriangles, View
 from services.simulator.rendering.instances import visible_instances
 from services.simulator.rendering.light import LIGHTS
 from services.simulator.rendering.nearest import Hits
@@ -57,6 +57,7 @@ class Drive:
         self._scene = Scene(world, self.camera, bands.threads, self.options.stereo_baseline_m, shadows)
         shader = Shader(world.atlas, world.atlas.index[world.sky_texture], light)
         self._renderer = Renderer(self.camera, self._scene.static, shader, bands, shadows)
+        self._flow_truth = FlowTruth(self.camera, bands)
         self._seen: OrderedDict[int, tuple[Moment, Hits]] = OrderedDict()
 
     @property
@@ -99,7 +100,7 @@ class Drive:
         next_moment, next_hits = self._seen_at(index + 1)
         moved = self._moved(moment, next_t_s)
         then = View(next_moment.world_from_camera, next_hits)
-        return flow_between(self.camera, hits, moment.world_from_camera, moved, then)
+        return self._flow_truth.between(hits, moment.world_from_camera, moved, then)
 
     def _images(self, index: int, view: RenderedView | None = None) -> tuple[Image, Image | None]:
         """What both cameras deliver of the light at a frame."""
@@ -124,7 +125,7 @@ class Drive:
                 for pose in (moment.world_from_camera, self.camera_path.world_from_camera(next_t_s))
             )
             moved = self._moved(moment, next_t_s)
-            flow_px = flow_between(self.camera, view.hits, pose, moved, View(next_pose, None)).flow_px
+            flow_px = self._flow_truth.between(view.hits, pose, moved, View(next_pose, None)).flow_px
         return self._sensor.exposed(view.image, flow_px, index, moment.t_s, int(baseline_m > 0.0))
 
     def _view(self, moment: Moment, hits: Hits) -> RenderedView:

@@ -8,10 +8,11 @@ import numpy.typing as npt
 
 from schemas.records import CameraCalibration, DepthImage, Image, TrueInstances, TrueObject, TruePose
 from services.camera.sources.source import SourceFrame
+from services.simulator.camera.camera import Camera
+from services.simulator.camera.timeline import Timeline
 from services.simulator.options import DriveOptions
 
 if TYPE_CHECKING:
-    from services.simulator.camera.camera import Camera
     from services.simulator.drive import Drive
 
 _RIGHT = "camera_right"
@@ -24,9 +25,15 @@ class Simulator:
     have the same lens, and the right one's projection says how far it stands to the right (P[0, 3] = -fx * baseline).
 
     The world is built when the first frame is asked for: an input that is only looked at costs nothing.
+
+    Raises:
+        InputError: options that no camera can meet.
     """
 
     def __init__(self, options: DriveOptions) -> None:
+        # A lens that shows nothing and a drive that never ends are found here, not at the first frame.
+        Camera.from_options(options)
+        Timeline(options)
         self._options = options
         self._drive: Drive | None = None
 
@@ -91,7 +98,7 @@ class Simulator:
 
 
 def _calibration(
-    time_ns: int, camera: "Camera", projection: npt.NDArray[np.float64] | None, frame_id: str
+    time_ns: int, camera: Camera, projection: npt.NDArray[np.float64] | None, frame_id: str
 ) -> CameraCalibration:
     return CameraCalibration(
         time_ns,

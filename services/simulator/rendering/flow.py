@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from services.simulator.camera.camera import Camera
 from services.simulator.frame import SimulatedFlow
+from services.simulator.rendering.bands import Bands
 from services.simulator.rendering.nearest import Hits
 
 Floats = NDArray[np.float64]
+Floats32 = NDArray[np.float32]
 
 _FAR_M = 1e7
 _DEPTH_TOLERANCE, _INVERSE_TOLERANCE = 0.02, 2e-4
@@ -37,35 +39,56 @@ class View:
     hits: Hits | None
 
 
-def flow_between(camera: Camera, now: Hits, pose: Floats, moved: MovedTriangles, then: View) -> SimulatedFlow:
-    """Flow from one view to the next, of `moved` triangles as they move, so that limbs of walking people do too.
+class FlowTruth:
+    """Flow of one camera's views."""
 
-    now: seen from pose (world_from_camera, 4x4). Where nobody looked then, everything counts as visible.
+    def __init__(self, camera: Camera, bands: Bands) -> None:
+        self._camera, self._bands = camera, bands
+        self._pixel = np.stack(camera.pixel_grid(), axis=-1)
+        x, y = camera.normalised()
+        self._ray = np.stack([x, y, np.ones_like(x)], axis=-1).astype(np.float64)
+
+    def between(self, now: Hits, pose: Floats, moved: MovedTriangles, then: View) -> SimulatedFlow:
+        """Flow from one view to the next, of `moved` triangles as they move, so that limbs of walking people do too.
+
+        now: seen from pose (world_from_camera, 4x4). Where nobody looked then, everything counts as visible.
+        """
+        flow = np.empty((*now.triangle.shape, 2), np.float32)
+        visible = np.ones(now.triangle.shape, bool)
+        motion, row_of = _motion_of_seen(now.triangle, moved)
+        next_pose = then.world_from_camera
+        nearness = None if then.hits is None else 1.0 / then.hits.depth_m
+
+        def carry(band: slice) -> None:
+            triangle = now.triangle[band]
+            depth = np.where(triangle < 0, _FAR_M, now.depth_m[band].astype(np.float64))
+            point = self._ray[band] * depth[..., None] @ pose[:3, :3].T + pose[:3, 3]
+            which = np.nonzero(triangle >= moved.first)
+            each = motion[row_of[triangle[which] - moved.first]]
+            point[which] = (each[:, :, :3] @ point[which][..., None])[..., 0] + each[:, :, 3]
+            next_point = (point - next_pose[:3, 3]) @ next_pose[:3, :3]
+            place = self._camera.project(next_point)
+            flow[band] = np.nan_to_num(place - self._pixel[band], nan=0.0)
+            if nearness is not None:
+                visible[band] = _seen_again(place, next_point[..., 2], nearness)
+
+        self._bands.run(carry, *now.triangle.shape)
+        return SimulatedFlow(flow, visible)
+
+
+def _motion_of_seen(triangle: NDArray[np.int32], moved: MovedTriangles) -> tuple[Floats, NDArray[np.int32]]:
+    """How each triangle seen moves, later_from_now (N, 3, 4), and each moved triangle's row among them.
+
+    A point keeps its place within its triangle's own axes.
     """
-    next_pose = then.world_from_camera
-    columns, rows = camera.pixel_grid()
-    x, y = camera.normalised()
-    sky = now.triangle < 0
-    depth = np.where(sky, _FAR_M, now.depth_m.astype(np.float64))
-    ray = np.stack([x, y, np.ones_like(x)], axis=-1).astype(np.float64)
-    point = ray * depth[..., None] @ pose[:3, :3].T + pose[:3, 3]
-    _carry(point, now.triangle, moved)
-    next_point = (point - next_pose[:3, 3]) @ next_pose[:3, :3]
-    place = camera.project(next_point)
-    flow = np.nan_to_num(place - np.stack([columns, rows], axis=-1), nan=0.0).astype(np.float32)
-    visible = np.ones(sky.shape, bool) if then.hits is None else _seen_again(place, next_point[..., 2], then.hits)
-    return SimulatedFlow(flow, visible)
-
-
-def _carry(point: Floats, triangle: NDArray[np.int32], moved: MovedTriangles) -> None:
-    """Move points (H, W, 3) with their triangles: by position within a triangle's axes, put back at the later time."""
-    which = np.nonzero(triangle >= moved.first)
-    rows = triangle[which] - moved.first
-    here = np.flatnonzero(np.any(moved.before[rows] != moved.after[rows], axis=(1, 2)))
-    which, rows = tuple(axis[here] for axis in which), rows[here]
+    seen = np.zeros(len(moved.before), bool)
+    seen[triangle[triangle >= moved.first] - moved.first] = True
+    rows = np.flatnonzero(seen)
+    row_of = np.cumsum(seen, dtype=np.int32) - 1
     before, after = moved.before[rows], moved.after[rows]
-    relative = np.linalg.solve(_axes(before), (point[which] - before[:, 0])[..., None])
-    point[which] = after[:, 0] + (_axes(after) @ relative)[..., 0]
+    rotation = _axes(after) @ np.linalg.inv(_axes(before))
+    shift = after[:, 0] - (rotation @ before[:, 0, :, None])[..., 0]
+    return np.concatenate([rotation, shift[..., None]], axis=2), row_of
 
 
 def _axes(corner: Floats) -> Floats:
@@ -76,15 +99,15 @@ def _axes(corner: Floats) -> Floats:
     return np.stack([e1, e2, normal], axis=-1)
 
 
-def _seen_again(place: Floats, depth_m: Floats, then: Hits) -> NDArray[np.bool_]:
-    """Whether the next view shows a surface of the depth expected at `place`, between pixel centres.
+def _seen_again(place: Floats, depth_m: Floats, nearness: Floats32) -> NDArray[np.bool_]:
+    """Whether the next view, of inverse depth `nearness`, shows a surface of the depth expected at `place`.
 
     Inverse depth is linear in the image over a plane, so that the ground is found again however slanted it is seen,
     while a pixel half covered by something nearer is not.
     """
-    height, width = then.depth_m.shape
+    height, width = nearness.shape
     inside = np.all((place >= 0.0) & (place <= [width - 1.0, height - 1.0]), axis=-1)
     at = np.where(inside[..., None], np.nan_to_num(place), 0.0).astype(np.float32)
-    seen = cv2.remap(1.0 / then.depth_m, at[..., 0], at[..., 1], cv2.INTER_LINEAR)
+    seen = cv2.remap(nearness, at[..., 0], at[..., 1], cv2.INTER_LINEAR)
     expected = 1.0 / np.maximum(depth_m, 1e-3)
     return np.asarray(inside & (np.abs(seen - expected) < _DEPTH_TOLERANCE * expected + _INVERSE_TOLERANCE))

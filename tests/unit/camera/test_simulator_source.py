@@ -6,6 +6,7 @@ import pytest
 
 from schemas.codec.camera import calibration_to_message, calibration_to_record
 from services.camera.sources.simulator import Simulator
+from services.runtime.errors import InputError
 from services.simulator.options import DriveOptions
 
 
@@ -85,3 +86,9 @@ def test_one_camera_has_no_right_one(simulator: Simulator) -> None:
     assert frame.image_right is None
     assert frame.calibration_right is None
     assert frame.calibration.distortion == ()
+
+
+def test_a_lens_that_shows_nothing_is_refused_at_once() -> None:
+    options = DriveOptions(lens="radial", distortion=(-2.0, 0.0, 0.0, 0.0, 0.0))
+    with pytest.raises(InputError, match=r"distortion=\(-2.0, 0.0, 0.0, 0.0, 0.0\): expected a radial lens"):
+        Simulator(options)
