@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions
 from services.simulator.painting.storeys import STYLES, paint_plain, paint_storeys
 from services.simulator.painting.town_library import paint_town_library
@@ -126,3 +127,11 @@ def test_textures_fit_the_atlas_and_follow_from_the_seed() -> None:
     assert sum(image.nbytes for image in first.values()) < 90e6
     differing = sum(not np.array_equal(image, other[name]) for name, image in first.items())
     assert differing > 0.9 * len(first)
+
+
+def test_texture_feeds_orb_as_real_images_do() -> None:
+    town = Drive(DriveOptions(world="town", seed=5, width=1242, height=375, frames=600, traffic=0.0, threads=0))
+    orb = cv2.ORB_create(nfeatures=2000)
+    for index in (0, 220, 450):
+        image = cv2.cvtColor(town.render(index).image, cv2.COLOR_BGR2GRAY)
+        assert len(orb.detect(image, None)) >= 1500

@@ -124,9 +124,9 @@ class HouseRow:
             }[lot.kind]
             house = build(rng, size, lot.storeys, wall=wall, roof=roof, texture=texture)
         pieces = [house]
-        if wall.blank_sides and self._murals and rng.random() < 0.12:
+        if wall.blank_sides and self._murals and rng.random() < 0.3:
             pieces.append(self._mural(lot))
-        garden = [] if lot.kind in ("shop", "hall") else self._garden(lot, setback_m, character)
+        garden = [] if lot.kind in ("shop", "hall") else self._garden(pose, lot, setback_m, character)
         return [piece.transformed(pose) for piece in [*pieces, *garden]]
 
     def _mural(self, lot: _Lot) -> Mesh:
@@ -136,7 +136,7 @@ class HouseRow:
         face = [[x, -0.6, high], [x, -0.6 - wide, high], [x, -0.6 - wide, 0.4], [x, -0.6, 0.4]]
         return quads([face], [[0, 0], [1, 0], [1, 1], [0, 1]], self._texture[f"mural_{number}"])
 
-    def _garden(self, lot: _Lot, setback_m: float, character: Character) -> list[Mesh]:
+    def _garden(self, pose: Floats, lot: _Lot, setback_m: float, character: Character) -> list[Mesh]:
         """Between the front and the pavement: shrubs, a fence with a way through, a path."""
         rng, texture = self._rng, self._texture
         pieces: list[Mesh] = []
@@ -145,11 +145,14 @@ class HouseRow:
                 at = np.eye(4)
                 at[:2, 3] = rng.uniform(-0.45, 0.45) * lot.width_m, rng.uniform(0.7, max(0.8, setback_m - 1.6))
                 at[:2, :2] *= rng.choice([-1.0, 1.0], 2) * rng.uniform(0.85, 1.1)
+                if not self._site.is_free(pose @ at, (2.0, 1.3)):
+                    continue
                 pieces.append(self._shrubs[int(rng.integers(0, len(self._shrubs)))].transformed(at))
         if setback_m > 2.2 and lot.kind != "flats":
             length = 0.5 * lot.width_m - 0.7
             for x in (-0.25 * lot.width_m - 0.35, 0.25 * lot.width_m + 0.35):
                 at = np.eye(4)
                 at[:2, 3] = x, setback_m - 1.05
-                pieces.append(street_things.garden_fence(character.fence, length, texture).transformed(at))
+                if self._site.is_free(pose @ at, (length + 0.2, 0.9)):
+                    pieces.append(street_things.garden_fence(character.fence, length, texture).transformed(at))
         return pieces

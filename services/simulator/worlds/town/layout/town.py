@@ -20,6 +20,7 @@ from services.simulator.worlds.town.layout.markings import Markings
 from services.simulator.worlds.town.layout.site import Site
 from services.simulator.worlds.town.layout.streets import streets_mesh
 from services.simulator.worlds.town.layout.terrain import terrain_mesh
+from services.simulator.worlds.town.layout.unique import landmark_meshes
 from services.simulator.worlds.town.plan import Line
 from services.simulator.worlds.town.profile import KERB_M, PAVEMENT_EDGE_M, SIDE_KERB_M, SIDE_PAVEMENT_EDGE_M
 from services.simulator.worlds.town.side_streets import BEYOND_M
@@ -43,7 +44,7 @@ def town_mesh(survey: TownSurvey, seed: int, max_slope: float, texture: Mapping[
         terrain_mesh(survey, drape, texture),
         Markings(survey, drape, rng, texture).mesh(),
     ]
-    pieces += _church(loop_fronts, site, rng, texture)
+    pieces += landmark_meshes(loop_fronts, site, survey.loop.line.length_m, rng, texture)
     zebras = survey.loop.line.point(np.array(survey.plan.zebras_m), 0.0).reshape(-1, 2)
     furniture = Furniture(site, survey.ground.distances, zebras, rng, texture)
     row = HouseRow(site, rng, texture)
@@ -92,20 +93,6 @@ def _both_sides(fronts: list[Frontage], survey: TownSurvey, s: float) -> list[Fr
     ]
 
 
-def _church(fronts: list[Frontage], site: Site, rng: np.random.Generator, texture: Mapping[str, int]) -> list[Mesh]:
-    """One church, wherever along the loop it finds room; its spire is seen from far."""
-    style = str(rng.choice(["sandstone", "yellow_brick"]))
-    roof = str(rng.choice(["roof_slate", "roof_red", "roof_moss"]))
-    for number in rng.permutation(len(fronts)):
-        front = fronts[int(number)]
-        for share in (0.5, 0.35, 0.65):
-            s = front.first_m + share * (front.last_m - front.first_m)
-            pose = site.pose(front.line, s, front.side * (front.back_m + 8.5), front.turn)
-            if site.take(pose, (13.0, 30.0), centre_y_m=-9.0):
-                return [town_houses.church_mesh(texture, style, roof).transformed(pose)]
-    return []
-
-
 def _street_ends(survey: TownSurvey, site: Site, rng: np.random.Generator, texture: Mapping[str, int]) -> list[Mesh]:
     """A block of flats across the end of every street that leads out of the town."""
     pieces = []
@@ -129,7 +116,7 @@ def _woods(survey: TownSurvey, site: Site, furniture: Furniture, rng: np.random.
     pieces = []
     kinds = ("lime", "maple", "oak", "birch", "poplar", "fir")
     for line, length_m in tracks:
-        for s in np.arange(4.0, length_m, 7.0):
+        for s in np.arange(4.0, length_m, 5.0):
             n = float(rng.choice([-1.0, 1.0]) * rng.uniform(*_WOOD_M))
             pose = site.pose(line, float(s + rng.uniform(-3.0, 3.0)), n)
             kind = str(rng.choice(kinds))
