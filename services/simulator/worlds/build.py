@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from services.runtime.errors import InputError
 from services.simulator.options import DriveOptions
+from services.simulator.worlds.corridor.build import build_corridor
 from services.simulator.worlds.street.build import build_street
+from services.simulator.worlds.town.build import build_town
 from services.simulator.worlds.world import World
 
 
@@ -15,7 +16,5 @@ def build_world(options: DriveOptions) -> World:
     Raises:
         InputError: options that this world cannot meet.
     """
-    builders = {"street": build_street}
-    if options.world not in builders:
-        raise InputError(f"simulator world={options.world!r}: expected one of {', '.join(builders)}")
+    builders = {"street": build_street, "town": build_town, "corridor": build_corridor}
     return builders[options.world](options)
