@@ -82,13 +82,13 @@ def fir_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
 
 
 def young_tree(rng: np.random.Generator, texture: Textures) -> Mesh:
-    """Newly planted, held by two stakes; 4 to 5 m."""
-    height = float(rng.uniform(3.8, 5.0))
+    """Newly planted, held by two stakes; about 5 m."""
+    height = float(rng.uniform(4.5, 5.4))
     stakes = [
         tube((dx, 0, _ROOT_M), (dx, 0, 1.7), (0.05, 0.05), texture["boards"], 5, repeat=(1.0, 3.0))
         for dx in (-0.28, 0.28)
     ]
-    crown = _crown(rng, 0.72 * height, (0.95, 1.1), 6, texture["leaves_light"])
+    crown = _crown(rng, 0.76 * height, (0.9, 0.95), 6, texture["leaves_light"])
     return merged([_trunk(0.7 * height, 0.06, texture["bark"]), *stakes, *crown])
 
 

@@ -32,8 +32,11 @@ class Site:
         self._taken = (on_loop | on_side).astype(np.uint8)
 
     def take(self, pose: Floats, size_m: tuple[float, float], *, slack_m: float = 0.0, centre_y_m: float = 0.0) -> bool:
-        """Take a rectangle of the object frame (x, y) round (0, centre_y_m), if all but a rim of it is free."""
-        inner = self._filled(pose, (size_m[0] - slack_m, size_m[1] - slack_m), centre_y_m)
+        """Take a rectangle of the object frame (x, y) round (0, centre_y_m), if it is free; `slack_m` of its width may not be.
+
+        Returns whether it was.
+        """
+        inner = self._filled(pose, (size_m[0] - slack_m, size_m[1]), centre_y_m)
         if inner is None:
             return False
         window, mask = inner
