@@ -16,6 +16,7 @@ from services.runtime.errors import InputError
 _ANNOTATIONS = "COCO's annotations: an object with images, annotations and categories"
 _RESULTS = "COCO's results: a list of {image_id, category_id, segmentation, score}"
 _LARGEST_SIDE_PX = 65535
+_LARGEST_MEASURE = float(_LARGEST_SIDE_PX**2)
 
 
 @dataclass(frozen=True)
@@ -97,11 +98,13 @@ def read_coco(path: Path) -> CocoDataset:
     known_categories = {category.category_id for category in categories}
     if len(image_by_id) != len(images):
         raise InputError(f"{path}: an id stands twice under images, expected each once")
+    if not len(categories) == len(known_categories) == len({category.name for category in categories}):
+        raise InputError(f"{path}: an id or a name stands twice under categories, expected each once")
     annotations = []
     for place, row in _rows(path, content, "annotations"):
         image, category_id = _checked_ids(place, row, image_by_id, known_categories)
         annotations.append(_annotation(place, row, image, category_id))
-    return CocoDataset(images, categories, tuple(annotations), content.get("info") or {})
+    return CocoDataset(images, categories, tuple(annotations), _mapping(str(path), "info", content.get("info")))
 
 
 def write_coco(path: Path, dataset: CocoDataset) -> None:
@@ -215,19 +218,21 @@ def _mask(place: str, row: dict[str, Any], image: CocoImage) -> Rle:
 
 
 def _annotation(place: str, row: dict[str, Any], image: CocoImage, category_id: int) -> CocoAnnotation:
-    number = row.get("id")
+    number, crowd = row.get("id"), row.get("iscrowd", 0)
     if not isinstance(number, int):
         raise InputError(f"{place}: id {shortened(number)}, expected a whole number")
+    if crowd not in (0, 1):
+        raise InputError(f"{place}: iscrowd {shortened(crowd)}, expected 0 or 1")
     mask = _mask(place, row, image)
     area, box = row.get("area"), row.get("bbox")
     match box:
-        case [int() | float() as x, int() | float() as y, int() | float() as width, int() | float() as height]:
+        case [x, y, width, height] if all(_is_measure(value) for value in box):
             box_px = (float(x), float(y), float(width), float(height))
         case None:
             box_px = mask_box(mask)
         case _:
             raise InputError(f"{place}: bbox {shortened(box)}, expected x, y, width, height")
-    if area is not None and (not isinstance(area, int | float) or area < 0):
+    if area is not None and not (_is_measure(area) and area >= 0):
         raise InputError(f"{place}: area {shortened(area)}, expected square pixels")
     return CocoAnnotation(
         number,
@@ -236,6 +241,18 @@ def _annotation(place: str, row: dict[str, Any], image: CocoImage, category_id: 
         mask,
         float(mask_area(mask) if area is None else area),
         box_px,
-        bool(row.get("iscrowd", 0)),
-        row.get("attributes") or {},
+        bool(crowd),
+        _mapping(place, "attributes", row.get("attributes")),
     )
+
+
+def _is_measure(value: Any) -> bool:
+    return type(value) in (int, float) and abs(value) <= _LARGEST_MEASURE
+
+
+def _mapping(place: str, name: str, value: Any) -> Mapping[str, Any]:
+    if value is None:
+        return {}
+    if not isinstance(value, dict):
+        raise InputError(f"{place}: {name} {shortened(value)}, expected an object")
+    return value

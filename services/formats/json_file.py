@@ -17,18 +17,28 @@ def read_json(path: Path, expected: str) -> Any:
         InputError: no such file, not readable or not JSON; names the file and says what was `expected` in it.
     """
     try:
-        return json.loads(path.read_bytes())
+        return json.loads(path.read_bytes(), object_pairs_hook=_without_twins)
     except FileNotFoundError:
         raise InputError(f"{path}: no such file, expected {expected}") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}), expected {expected}") from None
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not JSON ({error}), expected {expected}") from None
 
 
 def write_json(path: Path, value: Any) -> None:
     """Write `value` compactly, in the order it has."""
     path.write_text(json.dumps(value, separators=(",", ":"), allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _without_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    # json itself takes the last of two and says nothing: a frame's instances would be gone unseen
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"the name {shortened(twice)} stands twice in an object")
+    return found
 
 
 def shortened(value: Any) -> str:

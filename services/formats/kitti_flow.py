@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from services.formats.png import read_png, write_png
+from services.formats.png import described, read_png, write_png
 from services.runtime.errors import InputError
 
 STEPS_PER_PX = 64.0
@@ -33,7 +33,7 @@ def read_kitti_flow(path: Path) -> FlowImage:
     """Read one image. Raises InputError for what is no PNG of three 16-bit channels."""
     pixels = read_png(path, "KITTI flow: a PNG of three channels of 16 bits")
     if pixels.ndim != 3 or pixels.shape[2] != 3 or pixels.dtype != np.uint16:
-        raise InputError(f"{path}: {pixels.shape} {pixels.dtype}, expected KITTI flow: three channels of 16 bits")
+        raise InputError(f"{path}: {described(pixels)}, expected KITTI flow: three channels of 16 bits")
     valid = pixels[..., 2] != 0
     flow = (pixels[..., :2].astype(np.float32) - _ZERO) / np.float32(STEPS_PER_PX)
     flow[~valid] = 0.0

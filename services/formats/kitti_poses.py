@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from services.formats.pose_rows import read_pose_rows, reals, seconds_as_ns
 from services.formats.text_rows import TextRow
-from services.formats.trajectory import Trajectory
+from services.formats.trajectory import Trajectory, period_ns
 from services.runtime.errors import InputError
 
 COLUMNS = 12
@@ -53,15 +53,13 @@ def write_times(timestamp_ns: npt.NDArray[np.int64], path: Path) -> None:
 
 def _times(path: Path, count: int, times: Path | None, rate_hz: float | None) -> npt.NDArray[np.int64]:
     if times is None and rate_hz is not None:
-        if not (np.isfinite(rate_hz) and rate_hz > 0.0):
-            raise InputError(f"rate {rate_hz} Hz, expected a number above 0")
-        stamps: npt.NDArray[np.int64] = np.rint(np.arange(count) * (1e9 / rate_hz)).astype(np.int64)
+        stamps: npt.NDArray[np.int64] = np.rint(np.arange(count) * period_ns(rate_hz)).astype(np.int64)
         return stamps
     if times is None:
         times = path.parent / TIMES_NAME
         if not times.is_file():
-            raise InputError(f"{path}: KITTI poses hold no times; give a times file or a rate in Hz")
+            raise InputError(f"{path}: KITTI poses hold no times, expected --times with a file of them or --rate in Hz")
     found = read_times(times)
     if len(found) < count:
-        raise InputError(f"{times}: {len(found)} times for the {count} poses of {path}")
+        raise InputError(f"{times}: {len(found)} times for the {count} poses of {path}, expected one for each")
     return found[:count]

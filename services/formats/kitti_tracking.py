@@ -19,6 +19,7 @@ NO_ID = -1
 
 _LABEL = "17 fields (frame id type truncated occluded alpha box4 size3 place3 rotation_y) or 18 with a score"
 _DETECTION = "15 fields (frame, type, box4, score, size3, place3, rotation_y, alpha)"
+_FARTHEST_PX = 1e6
 _TYPES_OF_DETECTIONS = {1: "Pedestrian", 2: "Car", 3: "Cyclist"}
 
 
@@ -120,6 +121,8 @@ def _box(row: TextRow, start: int) -> tuple[float, float, float, float]:
     left, top, right, bottom = (
         row.real(start + offset, f"box {side}") for offset, side in enumerate(("left", "top", "right", "bottom"))
     )
+    if max(map(abs, (left, top, right, bottom))) > _FARTHEST_PX:
+        raise row.error("box", " ".join(row.fields[start : start + 4]), f"pixels up to {_FARTHEST_PX:g}")
     if right < left or bottom < top:
         raise row.error("box", " ".join(row.fields[start : start + 4]), "left top right bottom with left < right")
     return left, top, right, bottom

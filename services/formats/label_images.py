@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.formats.json_file import read_json, shortened, write_json
-from services.formats.png import read_png, write_png
+from services.formats.png import described, read_png, write_png
 from services.runtime.errors import InputError
 
 INDEX_NAME = "instances.json"
@@ -37,7 +37,7 @@ def read_label_image(path: Path) -> npt.NDArray[np.uint16]:
     """One label image (H, W). Raises InputError for what is no PNG of one channel of 8 or 16 bits."""
     labels = read_png(path, "a label image: one channel of 8 or 16 bits")
     if labels.ndim != 2 or labels.dtype not in (np.uint8, np.uint16):
-        raise InputError(f"{path}: {labels.shape} {labels.dtype}, expected one channel of 8 or 16 bits")
+        raise InputError(f"{path}: {described(labels)}, expected one channel of 8 or 16 bits")
     return np.asarray(labels, dtype=np.uint16)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from services.formats.png import read_png, write_png
+from services.formats.png import described, read_png, write_png
 from services.formats.rle import Rle, checked_rle, decode_mask, encode_mask, masks_overlap
 from services.formats.text_rows import TextRow, read_rows
 from services.runtime.errors import InputError
@@ -73,7 +73,7 @@ def read_mots_png(path: Path, frame: int) -> tuple[MotsObject, ...]:
     """Read one frame: pixel = id, 0 = background, 10000 = ignored. Raises InputError for what is no such image."""
     pixels = read_png(path, "a MOTS label image: one channel of 16 bits")
     if pixels.ndim != 2 or pixels.dtype not in (np.uint8, np.uint16):
-        raise InputError(f"{path}: {pixels.shape} {pixels.dtype}, expected one channel of 16 bits")
+        raise InputError(f"{path}: {described(pixels)}, expected one channel of 16 bits")
     ids = [int(value) for value in np.unique(pixels) if value != 0]
     if ids and ids[0] < IDS_PER_CLASS:
         raise InputError(f"{path}: id {ids[0]}, expected class * {IDS_PER_CLASS} + n")

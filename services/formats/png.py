@@ -30,6 +30,8 @@ def read_png(path: Path, expected: str) -> npt.NDArray[Any]:
         raise InputError(f"{path}: no such file, expected {expected}") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}), expected {expected}") from None
+    except ValueError:  # a name with a character that no file's can have
+        raise InputError(f"{str(path)!r}: no name of a file, expected {expected}") from None
     except cv2.error:
         pixels = None
     if pixels is None:
@@ -58,3 +60,11 @@ def _is_whole(data: bytes) -> bool:
             return True
         place = end
     return False
+
+
+def described(pixels: npt.NDArray[Any]) -> str:
+    """Size, channels and bits in words, for an error message."""
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    kind = "" if channels == 1 else " (colours or a palette)"
+    size = f"{pixels.shape[1]}x{pixels.shape[0]} px"
+    return f"{size} of {channels} channel{'s'[: channels > 1]}{kind} of {8 * pixels.dtype.itemsize} bits"

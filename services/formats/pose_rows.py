@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the text formats of trajectories share: rows of numbers, times in seconds, unit quaternions."""
 
+import math
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
@@ -53,7 +54,7 @@ def reals(row: TextRow, names: str, first: int) -> list[float]:
 
 def pose_matrix(row: TextRow, position: list[float], quaternion_xyzw: list[float]) -> npt.NDArray[np.float64]:
     """(4, 4). Raises InputError for a quaternion whose length is not 1 within a percent."""
-    length = float(np.linalg.norm(quaternion_xyzw))
+    length = math.hypot(*quaternion_xyzw)
     if abs(length - 1.0) > _LENGTH_TOLERANCE:
         raise InputError(f"{row.path}:{row.line}: quaternion of length {length:.3g}, expected 1")
     return matrix_from_pose(np.array([*position, *quaternion_xyzw]))

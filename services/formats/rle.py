@@ -10,6 +10,9 @@ import numpy.typing as npt
 
 from services.runtime.errors import InputError, ResourceError
 
+_FARTHEST_PX = 1e6
+"""pycocotools counts in 32 bits: a polygon's point farther away would be drawn elsewhere."""
+
 
 @dataclass(frozen=True)
 class Rle:
@@ -57,7 +60,7 @@ def rle_from_coco(segmentation: Any, height: int, width: int) -> Rle:
         case [list(), *_] as polygons if all(_is_polygon(polygon) for polygon in polygons):
             api = _mask_api()
             return _from_coco(api.merge(api.frPyObjects(polygons, height, width)))
-    raise InputError("no mask, expected RLE (size, counts) or a list of polygons of at least 3 points")
+    raise InputError(f"no mask, expected RLE (size, counts) or polygons of 3 points and more, to {_FARTHEST_PX:g} px")
 
 
 def encode_mask(mask: npt.NDArray[Any]) -> Rle:
@@ -117,7 +120,7 @@ def _is_polygon(polygon: Any) -> bool:
         isinstance(polygon, list)
         and len(polygon) >= 6
         and len(polygon) % 2 == 0
-        and all(isinstance(value, int | float) and np.isfinite(value) for value in polygon)
+        and all(type(value) in (int, float) and abs(value) <= _FARTHEST_PX for value in polygon)
     )
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.session import RecoverFlag, session_of
 from services.runtime.errors import InputError
 
@@ -32,6 +32,7 @@ def density(
 
     if not (math.isfinite(min_height) and min_height >= 0.0):
         raise InputError(f"--min-height {min_height:g}: expected pixels, 0 or more")
+    folder = check_outputs(json_file, plots, run)
     session = session_of(run)
     densities = read_densities(session, TrueDensityRules(min_height), recover=recover)
     error = density_error(densities.frames)
@@ -47,7 +48,7 @@ def density(
         "rules": asdict(densities.rules),
     }
     keep_json({"session": str(session), **measured}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.density.plots import plot_density_error
 
-        plot_density_error(densities, plots_folder(plots) / "density.png")
+        plot_density_error(densities, folder / "density.png")

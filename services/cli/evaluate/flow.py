@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.progress import bar
 
 _PICTURES = 4
@@ -29,7 +29,7 @@ def flow(
     from services.evaluation.optical_flow.score import flow_score
     from services.evaluation.optical_flow.table import COLUMNS, describe_flow, flow_rows
 
-    folder = None if plots is None else plots_folder(plots)
+    folder = check_outputs(json_file, plots, found, truth, not_occluded)
     pairs = find_flow_pairs(found, truth, not_occluded)
     score = flow_score(pairs, bar)
     print_table(COLUMNS, flow_rows(score))

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.session import RecoverFlag, session_of
 from services.evaluation.trajectory.alignment import Alignment
 from services.formats.point_cloud import LabelledPoints
@@ -59,6 +59,7 @@ def evaluate_map(
     options = SurfaceOptions(every, voxel, within)
     if not source.is_dir() and surface is None:
         raise InputError(f"{source}: expected --surface with the true surface, or the folder of a run instead")
+    folder = check_outputs(json_file, plots, source, surface, trajectory, truth)
     landmarks = read_points(source / MAP_NAME if source.is_dir() else source)
     alignment = _alignment(source, trajectory, truth, times, align)
     if alignment is not None:
@@ -68,11 +69,10 @@ def evaluate_map(
     rows = [("alignment", NOT_ALIGNED if alignment is None else alignment.described()), *map_rows(error, rules)]
     print_table([source.resolve().name], [ComparisonRow(what, (value,)) for what, value in rows])
     keep_json({"map": str(source), "alignment": rows[0][1], **describe_map_error(error, rules)}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.map.plots import plot_label_confusion, plot_map_error
         from services.evaluation.trajectory.ground_plane import FLAT, ground_plane
 
-        folder = plots_folder(plots)
         plane = FLAT if alignment is None else ground_plane(alignment.truth.world_from_camera)
         plot_map_error(landmarks, true_surface, error, plane, folder / "map_error.png")
         plot_label_confusion(error, folder / "map_labels.png")

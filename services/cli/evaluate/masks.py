@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.progress import bar
 
 
@@ -37,7 +37,7 @@ def masks(
     from services.evaluation.instance_masks.inputs import read_mask_input
     from services.evaluation.instance_masks.table import MEAN, describe_masks, mask_rows
 
-    folder = None if plots is None else plots_folder(plots)
+    folder = check_outputs(json_file, plots, found, truth)
     rules = FoundRules(minimum_height_px=min_height, minimum_score=min_score)
     given = read_mask_input(found, truth, bar)
     ids = given.category_ids(category or [])

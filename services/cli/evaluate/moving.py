@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.progress import bar
 
 
@@ -31,7 +31,7 @@ def moving(
     from services.evaluation.moving_masks.score import FlagRules, score_moving_masks
     from services.evaluation.moving_masks.table import describe_moving, moving_rows
 
-    folder = None if plots is None else plots_folder(plots)
+    folder = check_outputs(json_file, plots, found, truth)
     rules = FlagRules(minimum_height_px=min_height)
     result = score_moving_masks(found, truth, rules, bar)
     print_table([found.resolve().name], moving_rows(result, rules))

@@ -27,10 +27,26 @@ def print_table(columns: Sequence[str], rows: Sequence[ComparisonRow]) -> None:
         table.add_column(name, overflow="fold")
     for row in rows:
         table.add_row(row.what, *row.values)
-    console = Console(markup=False)
+    console = Console(markup=False, emoji=False)
     if not console.is_terminal:
         console.width = _LOG_WIDTH
     console.print(table, highlight=False)
+
+
+def check_outputs(json_file: Path | None, plots: Path | None, *inputs: Path | None) -> Path | None:
+    """Make the folder of the pictures, and give it back: asked before the work, so that none of it is lost.
+
+    Raises InputError where a file or folder of the `inputs` would be written to, or a file is where a folder is asked
+    for; ResourceError where nothing can be written there.
+    """
+    given = [path for path in inputs if path is not None]
+    if json_file is not None:
+        _check_json(json_file, given)
+    if plots is None:
+        return None
+    if plots.is_dir() and any(plots.resolve() == path.resolve() for path in given):
+        raise InputError(f"--plots {plots}: is an input, expected another folder")
+    return plots_folder(plots)
 
 
 def keep_json(values: Report, path: Path | None) -> None:
@@ -55,3 +71,13 @@ def plots_folder(path: Path) -> Path:
     except OSError as error:
         raise ResourceError(f"--plots {path}: cannot be made ({error.strerror})") from error
     return path
+
+
+def _check_json(path: Path, inputs: Sequence[Path]) -> None:
+    if path.is_dir():
+        raise InputError(f"--json {path}: is a folder, expected a file")
+    if path.exists():
+        place = path.resolve()
+        for given in inputs:
+            if place == given.resolve() or given.resolve() in place.parents:
+                raise InputError(f"--json {path}: is there already and belongs to the input {given}, expected another")

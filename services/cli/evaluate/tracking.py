@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.cli.evaluate.progress import bar
 
 
@@ -32,7 +32,7 @@ def tracking(
     from services.evaluation.object_tracking.score import tracking_scores
     from services.evaluation.object_tracking.table import describe_tracking, tracking_rows
 
-    folder = None if plots is None else plots_folder(plots)
+    folder = check_outputs(json_file, plots, found, truth)
     pairs = read_sequence_pairs(found, truth, bar)
     scores = tracking_scores(pairs, known_categories(pairs, category or []), bar)
     print_table(list(scores), tracking_rows(scores))

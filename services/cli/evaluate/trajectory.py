@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """`kinemap evaluate trajectory`: estimated trajectories against the true one, side by side."""
 
-import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from services.cli.evaluate.output import JsonFlag, PlotsFlag, keep_json, plots_folder, print_table
+from services.cli.evaluate.output import JsonFlag, PlotsFlag, check_outputs, keep_json, print_table
 from services.evaluation.trajectory.alignment import Alignment
 from services.runtime.errors import InputError
+
+_LARGEST_DIFFERENCE_S = 1e9
 
 
 def trajectory(
@@ -53,8 +54,11 @@ def trajectory(
     from services.evaluation.trajectory.table import trajectory_rows
     from services.formats.euroc import read_body_from_sensor
 
-    if not (math.isfinite(max_difference) and max_difference >= 0.0):
-        raise InputError(f"--max-difference {max_difference:g}: expected seconds, 0 or more")
+    if not 0.0 <= max_difference <= _LARGEST_DIFFERENCE_S:
+        raise InputError(f"--max-difference {max_difference:g}: expected seconds, 0 to {_LARGEST_DIFFERENCE_S:g}")
+    if times is not None and not times.is_file():
+        raise InputError(f"--times {times}: no such file, expected the times of KITTI's poses, one a line")
+    folder = check_outputs(json_file, plots, *estimates, truth, times, sensor)
     body_from_sensor = None if sensor is None else read_body_from_sensor(sensor)
     files = estimate_files(estimates)
     truth_file = recorded_truth(estimates) if truth is None else truth
@@ -76,7 +80,7 @@ def trajectory(
     print_table(list(files), trajectory_rows(evaluated))
     described = [{"name": item.name, "file": str(files[item.name]), **describe_error(item.error)} for item in evaluated]
     keep_json({"truth": str(truth_file), "estimates": described}, json_file)
-    if plots is not None:
+    if folder is not None:
         from services.evaluation.trajectory.plots import plot_all
 
-        plot_all(evaluated, true, plots_folder(plots))
+        plot_all(evaluated, true, folder)

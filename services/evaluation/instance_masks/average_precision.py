@@ -67,7 +67,7 @@ def mask_precision(
     names = {category.category_id: category.name for category in truth.categories}
     counted = {number: sum(a.category_id == number and not a.is_crowd for a in truth.annotations) for number in names}
     if not truth.images or not any(counted[number] for number in category_ids):
-        asked = ", ".join(names[number] for number in category_ids) or "none"
+        asked = ", ".join(names[number] for number in category_ids) or "any category"
         raise InputError(f"{len(truth.images)} images without a true instance of {asked}, expected at least one")
     evaluator = coco_evaluator(truth, found, category_ids)
     # just above each threshold but the last, which pycocotools itself lowers to 1 - 1e-10

@@ -94,6 +94,8 @@ def _from_json(found: Path, truth: Path) -> MaskInput:
 def _as_results(path: Path, found: CocoDataset, truth: CocoDataset) -> tuple[CocoResult, ...]:
     """Annotations as results, all sure; their images are the truth's by file name, their categories by name."""
     images = {image.file_name: image for image in truth.images}
+    if len(images) < len(truth.images) or "" in images:
+        raise InputError(f"{path}: the truth's images have no file names of their own, expected COCO's results instead")
     categories = {category.name: category.category_id for category in truth.categories}
     image_of, category_of = {}, {category.category_id: categories.get(category.name) for category in found.categories}
     for image in found.images:

@@ -9,7 +9,7 @@ import numpy as np
 from services.evaluation.instance_masks.average_precision import THESIS_IOUS, MaskPrecision
 from services.evaluation.instance_masks.confusion import ClassConfusion
 from services.evaluation.instance_masks.found import FoundRules, FoundScore
-from services.evaluation.pictures.figure import new_figure, save_figure
+from services.evaluation.pictures.figure import new_figure, save_figure, shown_name
 
 _DARK = 0.6
 
@@ -22,7 +22,7 @@ def plot_precision_recall(found: Mapping[str, FoundScore], rules: FoundRules, pa
         if score.recall is None:
             continue
         colour = f"C{number % 10}"
-        axes.plot(score.recalls, score.precisions, color=colour, label=name, drawstyle="steps-pre")
+        axes.plot(score.recalls, score.precisions, color=colour, label=shown_name(name), drawstyle="steps-pre")
         if score.precision is not None:
             axes.plot([score.recall], [score.precision], marker="o", color=colour)
     axes.set_xlim(0.0, 1.0)
@@ -46,7 +46,8 @@ def plot_precision_by_iou(score: MaskPrecision, path: Path) -> None:
     for number, (name, side) in enumerate(score.by_category.items()):
         known = [(iou, value) for iou, value in zip(THESIS_IOUS, side.by_iou, strict=True) if value is not None]
         if known:
-            label = f"{name}: {side.ap_thesis:.3f} in the mean" if side.ap_thesis is not None else name
+            mean = "" if side.ap_thesis is None else f": {side.ap_thesis:.3f} in the mean"
+            label = f"{shown_name(name)}{mean}"
             axes.plot(*zip(*known, strict=True), marker="o", markersize=4, color=f"C{number % 10}", label=label)
     axes.set_xlim(-0.02, 1.02)
     axes.set_ylim(0.0, 1.03)
@@ -54,13 +55,14 @@ def plot_precision_by_iou(score: MaskPrecision, path: Path) -> None:
     axes.set_ylabel("average precision")
     axes.set_title(f"average precision over IoU, {score.images} images", fontsize=10)
     axes.grid(visible=True, linewidth=0.3)
-    axes.legend(loc="lower left", fontsize=8)
+    if axes.lines:
+        axes.legend(loc="lower left", fontsize=8)
     save_figure(figure, path)
 
 
 def plot_class_confusion(confusion: ClassConfusion, path: Path) -> None:
     """Counts of true and found categories; a row's colour is its share of the true instances."""
-    names, size = confusion.names, len(confusion.names) + 1
+    names, size = [*map(shown_name, confusion.names)], len(confusion.names) + 1
     share = confusion.counts / np.maximum(confusion.counts.sum(axis=1, keepdims=True), 1)
     side_in = 2.2 + 0.65 * size
     figure = new_figure(height_in=side_in, width_in=side_in + 0.6)

@@ -48,10 +48,14 @@ def known_categories(pairs: Sequence[SequencePair], names: Sequence[str] = ()) -
     """The categories named; without names, of car and pedestrian those that the truth has.
 
     Raises:
-        InputError: a name that the truth does not have, or neither car nor pedestrian; says those it has.
+        InputError: a truth without objects, a name that it does not have, or neither car nor pedestrian; says those
+            it has.
     """
     present = set[str]().union(*(pair.truth.categories for pair in pairs))
-    having = f"expected one of {', '.join(sorted(present)) or 'those of a truth that is not empty'}"
+    if not present:
+        names_of_all = ", ".join(pair.truth.name for pair in pairs)
+        raise InputError(f"{names_of_all}: no object in the truth, expected one at least")
+    having = f"expected one of {', '.join(sorted(present))}"
     for name in names:
         if name not in present:
             raise InputError(f"category {name!r}: not in the truth, {having}")

@@ -41,25 +41,20 @@ class ObjectSequence:
     ignored: Mapping[int, Sequence[Rle | Box]] = field(default_factory=dict)
 
     @property
-    def length(self) -> int:
-        """Frames, from 0 to the last that holds an object."""
-        return 1 + max(self.frames, default=-1)
-
-    @property
     def categories(self) -> set[str]:
         """Those of the objects seen."""
         return {item.category for items in self.frames.values() for item in items}
 
 
 def match_sequence(truth: ObjectSequence, found: ObjectSequence, category: str) -> list[MatchedFrame]:
-    """Every frame's true and found objects of a class.
+    """The true and found objects of a class in every frame that holds an object; no measure asks for the others.
 
     What was found of a hard object or of a class too much alike, in an ignored region, or, of boxes that match
     nothing, what is at most 25 px high, does not count (KITTI tracking; KITTI MOTS for masks, which has no such
     objects and sizes). Raises InputError for masks of different sizes, or masks here and boxes there.
     """
     frames = []
-    for number in range(max(truth.length, found.length)):
+    for number in sorted({*truth.frames, *found.frames}):
         true = [o for o in truth.frames.get(number, ()) if o.category in (category, _DISTRACTORS.get(category))]
         seen = [o for o in found.frames.get(number, ()) if o.category == category]
         try:

@@ -87,7 +87,7 @@ class ObjectTrackingEvaluator:
             }
 
     def sequence(self, frames: Sequence[MatchedFrame]) -> SequenceResult:
-        """Score one sequence; every frame of it, those without objects too."""
+        """Score one sequence, its frames in order; those without any object change nothing."""
         true_ids, true_of_frame = _numbered([frame.true_ids for frame in frames])
         found_ids, found_of_frame = _numbered([frame.found_ids for frame in frames])
         true_detections = sum(ids.size for ids in true_of_frame)

@@ -8,7 +8,7 @@ import numpy as np
 
 from services.evaluation.object_tracking.metrics import HOTA_IOUS
 from services.evaluation.object_tracking.score import ClassScore
-from services.evaluation.pictures.figure import new_figure, save_figure
+from services.evaluation.pictures.figure import new_figure, save_figure, shown_name
 
 _PARTS = (("HOTA", "hota", "#1f77b4"), ("DetA", "det_a", "#2e8b57"), ("AssA", "ass_a", "#d62728"))
 
@@ -26,7 +26,8 @@ def plot_hota_by_iou(scores: Mapping[str, ClassScore], path: Path) -> None:
         axes.set_xlim(0.0, 1.0)
         axes.set_ylim(0.0, 1.03)
         axes.set_xlabel("IoU from which an object counts as found")
-        axes.set_title(f"{category}: {score.total.true_objects} objects in {score.total.true_detections} views")
+        true = f"{score.total.true_objects} objects in {score.total.true_detections} views"
+        axes.set_title(f"{shown_name(category)}: {true}")
         axes.grid(visible=True, linewidth=0.3)
         axes.legend(loc="lower left", fontsize=8)
     save_figure(figure, path)
@@ -43,9 +44,9 @@ def plot_sequences(scores: Mapping[str, ClassScore], path: Path) -> None:
         for number, (name, field, colour) in enumerate(_PARTS):
             values = [getattr(alone, field) for alone in known.values()]
             axes.bar(places + 0.27 * (number - 1), values, width=0.25, color=colour, label=name)
-        axes.set_xticks(places, list(known))
+        axes.set_xticks(places, [*map(shown_name, known)])
         axes.set_ylim(0.0, 1.03)
-        axes.set_title(f"{category}, by sequence")
+        axes.set_title(f"{shown_name(category)}, by sequence")
         axes.grid(visible=True, axis="y", linewidth=0.3)
         axes.set_axisbelow(True)
         axes.legend(loc="upper right", fontsize=8, ncols=3)

@@ -15,7 +15,7 @@ from services.evaluation.optical_flow.error import (
 )
 from services.evaluation.optical_flow.inputs import FlowPair, read_flow
 from services.evaluation.optical_flow.score import FlowScore
-from services.evaluation.pictures.figure import new_figure, save_figure
+from services.evaluation.pictures.figure import new_figure, save_figure, shown_name
 from services.evaluation.pictures.flow_colours import flow_colours
 from services.formats.kitti_flow import FlowImage
 
@@ -51,9 +51,10 @@ def plot_flow_pair(pair: FlowPair, path: Path) -> None:
     longest_px = float(np.percentile(lengths, _LONGEST_PERCENTILE)) if lengths.size else 1.0
     height, width = truth.valid.shape
     figure = new_figure(height_in=3 * (9.0 * height / width + 0.3) + 0.2)
+    name = shown_name(pair.name)
     epe, outliers = (0.0 if value is None else value for value in (alone.epe_px, alone.outliers))
     rows = (
-        (flow_colours(truth.flow, longest_px, truth.valid), f"{pair.name}: truth (full colour: {longest_px:.1f} px)"),
+        (flow_colours(truth.flow, longest_px, truth.valid), f"{name}: truth (full colour: {longest_px:.1f} px)"),
         (flow_colours(found.flow, longest_px, found.valid), "found"),
         (
             error_colours(error, truth),

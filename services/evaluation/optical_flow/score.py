@@ -30,7 +30,8 @@ def flow_score(pairs: FlowPairs, progress: Progress = silent) -> FlowScore:
         try:
             _add(score, pair)
         except InputError as error:
-            raise InputError(f"{pair.found}: {error}" if str(pair.found) not in str(error) else str(error)) from None
+            named = any(str(path) in str(error) for path in (pair.found, pair.truth, pair.visible_truth) if path)
+            raise InputError(str(error) if named else f"{pair.found}: {error}") from None
     if not score.all.true_pixels:
         raise InputError(f"{pairs.pairs[0].truth}: no pixel with a known flow, expected at least one")
     return score

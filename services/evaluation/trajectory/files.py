@@ -26,7 +26,7 @@ def read_trajectory(
     """
     rows = read_pose_rows(path, "a trajectory in TUM, KITTI or EuRoC format")
     columns = len(rows[0].fields)
-    if columns == euroc.STATE_COLUMNS or (columns == euroc.POSE_COLUMNS and path.suffix == ".csv"):
+    if columns == euroc.STATE_COLUMNS or (columns == euroc.POSE_COLUMNS and path.suffix.lower() == ".csv"):
         return euroc.euroc_rows(path, rows, body_from_sensor)
     if body_from_sensor is not None:
         raise InputError(f"{path}: T_BS of a sensor is for EuRoC's poses of the body, expected an EuRoC .csv with it")

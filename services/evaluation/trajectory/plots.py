@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from services.evaluation.pictures.figure import finish_top_view, new_figure, save_figure
+from services.evaluation.pictures.figure import finish_top_view, new_figure, save_figure, shown_name
 from services.evaluation.trajectory.estimates import EvaluatedTrajectory
 from services.evaluation.trajectory.ground_plane import ground_plane
 from services.formats.trajectory import Trajectory
@@ -82,7 +82,7 @@ def plot_error_violin(evaluated: Sequence[EvaluatedTrajectory], truth: Trajector
     axes.set_xticks(places, [_label(item, "\n") for item in evaluated], fontsize=8)
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel("absolute error of a pose [m]")
-    axes.set_title(f"error against {Path(truth.name).name}: spread, quartiles and median")
+    axes.set_title(f"error against {shown_name(Path(truth.name).name)}: spread, quartiles and median")
     axes.grid(visible=True, axis="y", linewidth=0.3)
     save_figure(figure, path)
 
@@ -106,8 +106,8 @@ def plot_error_over_time(evaluated: Sequence[EvaluatedTrajectory], truth: Trajec
 
 
 def _label(item: EvaluatedTrajectory, between: str = ": ") -> str:
-    error = item.error
-    return f"{item.name}{between}ATE {error.absolute_m.rmse:.3f} m ({error.alignment.value}), {error.coverage:.1%}"
+    ate = f"ATE {item.error.absolute_m.rmse:.3f} m ({item.error.alignment.value}), {item.error.coverage:.1%}"
+    return f"{shown_name(item.name)}{between}{ate}"
 
 
 def _colour(number: int) -> str:

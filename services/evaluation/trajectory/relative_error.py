@@ -12,6 +12,7 @@ from services.evaluation.trajectory.reference_frames import ReferenceFrames
 from services.evaluation.trajectory.statistics import ErrorStatistics
 from services.runtime.errors import InputError
 
+_MOST_FRAMES = 10**9
 _PATH_TOLERANCE = 0.1
 """a pair is as far apart as asked for when it is so within this share"""
 
@@ -38,9 +39,12 @@ class RelativeError:
 
 
 def error_by_frames(frames: ReferenceFrames, aligned: npt.NDArray[np.float64], delta: int) -> RelativeError:
-    """`aligned` (M, 4, 4) are the estimated poses by `ReferenceFrames.row`. Raises InputError for `delta` below 1."""
-    if delta < 1:
-        raise InputError(f"relative error over {delta} frames, expected at least 1")
+    """`aligned` (M, 4, 4) are the estimated poses by `ReferenceFrames.row`.
+
+    Raises InputError for another `delta` than 1 to 10^9.
+    """
+    if not 1 <= delta <= _MOST_FRAMES:
+        raise InputError(f"relative error over {delta} frames, expected 1 to {_MOST_FRAMES}")
     first = np.arange(max(len(frames) - delta, 0), dtype=np.intp)
     return _over(frames, aligned, np.stack((first, first + delta), axis=1), delta, "frames")
 

@@ -121,7 +121,7 @@ def test_kitti_poses_without_times_take_the_rate(kinemap: Kinemap) -> None:
     rows = [f"1 0 0 {i} 0 1 0 0 0 0 1 {i * i}\n" for i in range(20)]
     Path("truth.txt").write_text("".join(rows))
     Path("estimate.txt").write_text("".join(rows[:15]))
-    _one_line(kinemap("estimate.txt", "--truth", "truth.txt"), "KITTI poses hold no times; give a times file or a rate")
+    _one_line(kinemap("estimate.txt", "--truth", "truth.txt"), "KITTI poses hold no times, expected --times")
     ended = kinemap("estimate.txt", "--truth", "truth.txt", "--rate", "10")
     assert (ended.code, "15 of 20 frames (75.0%)" in ended.out) == (0, True)
 

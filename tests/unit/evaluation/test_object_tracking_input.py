@@ -153,11 +153,11 @@ def test_label_images_and_mots_meet(tmp_path: Path) -> None:
     car = [MotsObject(frame, 1007, CAR, encode_mask(mask)) for frame in (0, 2)]
     write_mots_text(tmp_path / "found.txt", car)
     frames = _matched(tmp_path / "found.txt", folder)
-    assert [frame.iou.tolist() for frame in frames] == [[[1.0]], [], [[1.0]]]
+    assert [frame.iou.tolist() for frame in frames] == [[[1.0]], [[1.0]]]
     (tmp_path / "images").mkdir()
     for item in car:
         write_mots_png(tmp_path / "images" / f"{item.frame:06d}.png", [item], 20, 120)
-    assert [frame.iou.tolist() for frame in _matched(tmp_path / "images", folder)] == [[[1.0]], [], [[1.0]]]
+    assert [frame.iou.tolist() for frame in _matched(tmp_path / "images", folder)] == [[[1.0]], [[1.0]]]
     (pair,) = read_sequence_pairs(folder, folder)
     assert known_categories([pair]) == ["car", "pedestrian"]
 
@@ -202,5 +202,5 @@ def test_nonsense_is_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="category 'pedestrian': not in the truth, expected one of car"):
         known_categories(pairs, ["pedestrian"])
     (tmp_path / "nobody.txt").write_text("")
-    with pytest.raises(InputError, match="no car and no pedestrian in the truth"):
+    with pytest.raises(InputError, match="nobody: no object in the truth"):
         known_categories(read_sequence_pairs(tmp_path / "nobody.txt", tmp_path / "nobody.txt"))

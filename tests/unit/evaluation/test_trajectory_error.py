@@ -167,7 +167,7 @@ def test_a_truth_that_stands_gives_no_scale(winding_drive: Drive) -> None:
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        ({"delta_frames": 0}, "over 0 frames, expected at least 1"),
+        ({"delta_frames": 0}, "over 0 frames, expected 1 to"),
         ({"delta_m": float("nan")}, "over nan m, expected a number above 0"),
         ({"rate_hz": 0.0}, "rate 0 Hz"),
         ({"frames": 5}, "5 frames in the input, expected at least the 120"),
