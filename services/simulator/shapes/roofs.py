@@ -132,7 +132,9 @@ def dormer_mesh(x: float, front_y: float, low_m: float, texture: Mapping[str, in
     return merged([window, body, lid])
 
 
-def chimney_mesh(x: float, y: float, top_m: float, texture: Mapping[str, int]) -> Mesh:
-    """A brick chimney with two pots."""
+def chimney_mesh(at_m: tuple[float, float], low_m: float, top_m: float, texture: Mapping[str, int]) -> Mesh:
+    """A brick chimney with two pots, from below the roof to `top_m`."""
+    x, y = at_m
     pots = [box((0.22, 0.22, 0.4), (x + dx, y, top_m + 0.2), texture["plain_red_brick"], 3.0) for dx in (-0.18, 0.18)]
-    return merged([box((0.9, 0.6, 2.0), (x, y, top_m - 1.0), texture["wall"], 3.0), *pots])
+    stack = box((0.9, 0.6, top_m - low_m), (x, y, 0.5 * (low_m + top_m)), texture["wall"], 3.0)
+    return merged([stack, *pots])

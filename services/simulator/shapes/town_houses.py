@@ -30,7 +30,8 @@ def terrace_mesh(
         return merged(pieces)
     pieces.append(roofs.gable_roof(size_m, top, pitch, roof=roof, wall=wall, texture=texture))
     ridge = top + 0.5 * size_m[1] * pitch
-    pieces.append(roofs.chimney_mesh(0.5 * size_m[0] - 0.5, -0.5 * size_m[1], ridge + 0.9, texture))
+    at = (0.5 * size_m[0] - 0.5, -0.5 * size_m[1])
+    pieces.append(roofs.chimney_mesh(at, top, ridge + 0.9, texture))
     if rng.random() < 0.5:
         x = float(rng.uniform(-0.2, 0.2)) * size_m[0]
         pieces.append(roofs.dormer_mesh(x, -0.6, top + 0.45, texture))
@@ -44,13 +45,16 @@ def villa_mesh(
     """A detached house with a hip, gable or cross gable roof, often with a porch or a bay."""
     top = height_m(storeys, wall)
     pieces = [walls_mesh(size_m, storeys, wall, texture)]
-    kind = int(rng.integers(0, 3))
+    kind, pitch = int(rng.integers(0, 3)), float(rng.uniform(0.65, 0.95))
     if kind == 0:
-        pieces.append(roofs.hip_roof(size_m, top, float(rng.uniform(0.6, 0.85)), texture[roof]))
+        pieces.append(roofs.hip_roof(size_m, top, pitch, texture[roof]))
     else:
         build = roofs.gable_roof if kind == 1 else roofs.cross_gable_roof
-        pieces.append(build(size_m, top, float(rng.uniform(0.75, 1.0)), roof=roof, wall=wall, texture=texture))
-    pieces.append(roofs.chimney_mesh(0.2 * size_m[0], -0.35 * size_m[1], top + 0.42 * size_m[1] + 0.6, texture))
+        pieces.append(build(size_m, top, pitch, roof=roof, wall=wall, texture=texture))
+    span = {0: min(size_m), 1: size_m[1], 2: size_m[0]}[kind]
+    pieces.append(
+        roofs.chimney_mesh((0.15 * size_m[0], -0.4 * size_m[1]), top, top + 0.5 * span * pitch + 0.6, texture)
+    )
     if rng.random() < 0.6:
         pieces.append(_bay(float(rng.choice([-0.25, 0.25])) * size_m[0], wall, texture[roof], texture))
     pieces.append(_step(rng, size_m, texture))

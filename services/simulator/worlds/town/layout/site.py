@@ -32,7 +32,7 @@ class Site:
         self._taken = (on_loop | on_side).astype(np.uint8)
 
     def take(self, pose: Floats, size_m: tuple[float, float], *, slack_m: float = 0.0, centre_y_m: float = 0.0) -> bool:
-        """Take a rectangle of the object frame (x, y) round (0, centre_y_m), if it is free; `slack_m` of its width may not be.
+        """Take a rectangle of the object frame (x, y) round (0, centre_y_m), if it is free but for `slack_m` in width.
 
         Returns whether it was.
         """
