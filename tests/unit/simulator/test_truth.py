@@ -119,3 +119,25 @@ def test_orb_finds_and_matches_features_as_on_real_images(world: str) -> None:
     found = [orb_behaviour(drive, index) for index in (30, 160)]
     assert min(behaviour.features for behaviour in found) >= 1500
     assert min(behaviour.right for behaviour in found) >= 0.6
+
+
+@pytest.mark.parametrize("options", [{}, {"world": "town", "traffic": 0.6, "max_slope": 0.1}], ids=str)
+def test_surfaces_of_objects_lie_in_their_cuboids(options: dict[str, Any]) -> None:
+    drive = Drive(DriveOptions(seed=2, **options))
+    pitches = []
+    for index in (60, 150, 240):
+        frame = drive.render(index)
+        x, y = drive.camera.normalised()
+        point = np.stack([x, y, np.ones_like(x)], axis=-1) * frame.depth_m[..., None]
+        in_world = point @ frame.world_from_camera[:3, :3].T + frame.world_from_camera[:3, 3]
+        for found in frame.instances:
+            relative = in_world[frame.labels == found.instance_id] - found.position_m
+            cos, sin = np.cos(found.heading_rad), np.sin(found.heading_rad)
+            level = relative @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+            cos, sin = np.cos(found.pitch_rad), np.sin(found.pitch_rad)
+            own = level @ np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+            outside = np.abs(own) - 0.5 * np.array(found.size_m)
+            assert np.percentile(outside.max(axis=1), 98) < 0.35, found
+            pitches.append(abs(found.pitch_rad))
+    assert len(pitches) > 20
+    assert (max(pitches) > np.deg2rad(1.0)) == (drive.options.world == "town")
