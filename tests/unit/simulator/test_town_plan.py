@@ -159,11 +159,12 @@ def test_zebra_crossings_keep_clear_of_junctions_and_of_the_start() -> None:
     found = 0
     for seed in range(12):
         plan = survey(seed).plan
+        assert len(plan.zebras_m) >= 2
         found += len(plan.zebras_m)
         for zebra in plan.zebras_m:
             assert not plan.near_crossing(zebra, CROSSING_CLEAR_M)
             assert around(zebra, plan.loop.length_m) >= 30.0
-    assert found >= 18
+    assert found >= 30
 
 
 def test_same_seed_same_plan_whatever_the_traffic() -> None:

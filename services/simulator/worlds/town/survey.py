@@ -20,7 +20,7 @@ from services.simulator.worlds.town.side_streets import BEYOND_M, Mouth, SideStr
 Floats = NDArray[np.float64]
 
 _ZEBRA_GAP_M = 120.0
-_STRAIGHT_ENOUGH = 1.0 / 120.0
+_STRAIGHT_ENOUGH = 1.0 / 90.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,9 @@ def _zebras(loop: Loop, crossings: list[Crossing], rng: np.random.Generator) -> 
     wanted = [crossing.s_m + float(rng.choice([-16.0, 16.0])) for crossing in crossings]
     wanted += [0.5 * (street.start_m + street.end_m) for street in loop.streets]
     found: list[float] = []
-    for s in rng.permutation(np.array(wanted)) % length_m:
+    # Where none of these will do, anywhere along a street.
+    spare = [st.start_m + u * (st.end_m - st.start_m) for st in loop.streets for u in (0.3, 0.7, 0.15, 0.85)]
+    for s in np.concatenate([rng.permutation(np.array(wanted)), spare]) % length_m:
         bend = np.abs(loop.line.curvature(s + np.linspace(-10.0, 10.0, 9))).max()
         others = [*found, *(crossing.s_m for crossing in crossings), 0.0]
         gaps = [abs((s - other + 0.5 * length_m) % length_m - 0.5 * length_m) for other in others]
