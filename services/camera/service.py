@@ -15,7 +15,6 @@ from services.camera.position import PositionFile
 from services.camera.prefetch import Prefetch
 from services.camera.presence import Presence
 from services.camera.sources.live.live_address import is_live
-from services.camera.sources.opencv_log import silence_opencv
 from services.camera.sources.source import Source, SourceFrame
 from services.runtime.bus import Bus
 from services.runtime.config import Config
@@ -129,7 +128,6 @@ class CameraService:
 
 def serve(config: Config) -> None:
     """Publish the frames of an input: a dataset's folder, a video, a recorded session or the simulator."""
-    silence_opencv()
     source = open_configured_source(config)
     try:
         with ZenohBus(config.bus, lossless=config.delivery.mode == "lossless") as bus:

@@ -83,7 +83,7 @@ def read_calibration(path: Path) -> CameraModel:
         projection = next(iter(read_projections(path).values()))
         return CameraModel(path, projection[0, 0], projection[1, 1], projection[0, 2], projection[1, 2], None)
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
+        values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(f"calibration {path}: cannot be read ({error.strerror})") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:

@@ -31,6 +31,7 @@ BODY_FROM_CAMERA = (
     matrix_from_pose(np.array([-0.02, 0.05, 0.01, 0.01, -0.02, 0.7, 0.714])),
 )
 FARTHER_RIGHT = (BODY_FROM_CAMERA[0] @ matrix_from_pose(np.array([0.5, 0, 0, 0, 0, 0, 1]))).ravel().tolist()
+SAME_PLACE = BODY_FROM_CAMERA[1].ravel().tolist()
 # One point of the world a frame, in front of the rig.
 POINTS_M = ((0.3, 0.1, 3.0), (-0.7, 0.4, 4.0), (0.2, -0.6, 2.5))
 
@@ -172,6 +173,13 @@ def test_truth_between_its_samples_and_beyond_them(euroc: Path) -> None:
     ("changed", "said"),
     [
         ({"T_BS": f"\n  data: {FARTHER_RIGHT}"}, "cam1: at x -0.39., .* m of the left camera, expected right of it"),
+        ({"T_BS": f"\n  data: {SAME_PLACE}"}, "cam1: where the left camera is, expected right of it"),
+        (
+            {"intrinsics": "[0.001, 200, 161, 99]"},
+            "a focal length of .* px instead of 0.001; expected",
+        ),
+        ({"distortion_coefficients": "[-200, 1e9, 50, 3]"}, "cam1: rectified with the left one, a focal length of"),
+        ({"rate_hz": "0"}, "rate_hz 0, expected above 0"),
         ({"intrinsics": "[1, 2, 3]"}, r"intrinsics '\[1, 2, 3\]', expected 4 finite numbers"),
         ({"intrinsics": "[1, 2, 3, nan]"}, "intrinsics .* expected 4 finite numbers"),
         ({"intrinsics": "[0, 2, 3, 4]"}, "focal lengths 0 2, expected above 0"),

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from services.camera.sources.folders.number_rows import even_times_ns, read_times_ns
+from services.camera.sources.folders.number_rows import even_times_ns, read_times_ns, rows_of_images
 from services.camera.sources.kitti.odometry import KittiOdometry, is_kitti_folder
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
@@ -125,7 +125,7 @@ def test_bad_calibration_is_named_by_line(kitti: Path, text: str | None, said: s
         ("0.0\n1e999999\n2\n", r"times\.txt line 2"),
         ("0.0\n0.2\n0.2\n", r"times\.txt line 3: time 0\.2 s, expected times that increase"),
         ("-1\n0.2\n0.3\n", r"times\.txt line 1: time -1 s, expected times that increase from 0"),
-        ("1e30\n", r"times\.txt line 1: time 1e30 s"),
+        ("1e30\n0\n1\n", r"times\.txt line 1: time 1e30 s"),
     ],
 )
 def test_bad_times_are_named_by_line(kitti: Path, text: str, said: str) -> None:
@@ -138,6 +138,7 @@ def test_bad_times_are_named_by_line(kitti: Path, text: str, said: str) -> None:
     ("text", "said"),
     [
         (f"{IDENTITY}\n", r"poses\.txt: 1 poses, expected 3"),
+        ("0 0 0 0 0 0 0 0 0 0 0 0\n" * 3, r"poses\.txt: pose 1 of 3 is not a rotation"),
         (f"{IDENTITY}\n" * 2 + "1 2 3\n", r"poses\.txt line 3: 3 numbers, expected 12"),
         (f"{IDENTITY}\n" * 2 + IDENTITY.replace("0", "nan"), r"poses\.txt line 3: 'nan', expected a finite number"),
     ],
@@ -150,12 +151,17 @@ def test_bad_poses_are_named_by_line(kitti: Path, text: str, said: str) -> None:
 
 def test_stereo_that_does_not_fit_together(stereo: Path, make_images: Callable[..., Path]) -> None:
     (stereo / "image_1" / "000002.png").unlink()
-    with pytest.raises(InputError, match="image_1: 2 images, expected 3"):
+    with pytest.raises(InputError, match=r"image_1: no 000002, expected one for every image in .*image_0"):
         KittiOdometry(stereo)
     make_images("sequences/00/image_1", size=(20, 20))
     with pytest.raises(InputError, match="image_1: images of 20x20 px, expected 32x24 as in image_0"):
         KittiOdometry(stereo)
     make_images("sequences/00/image_1")
+    (stereo / "image_1" / "000001.png").rename(stereo / "image_1" / "000009.png")
+    with pytest.raises(InputError, match="image_1: no 000001, expected one for every image"):
+        KittiOdometry(stereo)
+    make_images("sequences/00/image_1")
+    (stereo / "image_1" / "000009.png").rename(stereo / "000009.png")
     (stereo / "calib.txt").write_text(f"{P0}\n")
     with pytest.raises(InputError, match="no line 'P1:'"):
         KittiOdometry(stereo)
@@ -164,8 +170,8 @@ def test_stereo_that_does_not_fit_together(stereo: Path, make_images: Callable[.
 def test_times_are_exact_to_the_decimal(tmp_path: Path) -> None:
     path = tmp_path / "times.txt"
     path.write_text("0.100000001\n1403636579.763555555\n")
-    assert read_times_ns(path, 2) == [100_000_001, 1_403_636_579_763_555_555]
-    assert even_times_ns(4, 30.0) == [0, 33_333_333, 66_666_667, 100_000_000]
+    assert read_times_ns(path, [Path("a.png"), Path("b.png")]) == [100_000_001, 1_403_636_579_763_555_555]
+    assert even_times_ns(range(4), 30.0) == [0, 33_333_333, 66_666_667, 100_000_000]
 
 
 def test_real_sequences(shared_data: Path) -> None:
@@ -187,3 +193,48 @@ def test_real_sequences(shared_data: Path) -> None:
     assert (disparity > 0).mean() > 0.7
     colour = _frame(KittiOdometry(shared_data / "kitti_traffic"), 77)
     assert colour.image.pixels.shape == (375, 1242, 3)
+
+
+def test_a_missing_image_keeps_the_times_and_poses_of_the_others(kitti: Path) -> None:
+    (kitti / "poses.txt").write_text("".join(f"1 0 0 0 0 1 0 0 0 0 1 {z}\n" for z in range(3)))
+    (kitti / "image_0" / "000001.png").unlink()
+    frames = [_frame(KittiOdometry(kitti), index) for index in range(2)]
+    assert [frame.timestamp_ns for frame in frames] == [0, 207_200_000]
+    assert [frame.true_pose.world_from_camera[2, 3] for frame in frames if frame.true_pose] == [0, 2]
+
+
+@pytest.mark.parametrize(
+    ("names", "rows", "expected"),
+    [
+        (("000000", "000001"), 9, [0, 1]),
+        (("000001", "000002"), 9, [0, 1]),
+        (("000000", "000002"), 3, [0, 2]),
+        (("1", "3"), 3, [0, 2]),
+        (("000004", "000005"), 9, [4, 5]),
+        (("3", "12"), 9, [0, 1]),
+        (("left", "right"), 9, [0, 1]),
+        (("7", "8"), 2, [0, 1]),
+    ],
+)
+def test_names_tell_the_rows_where_images_are_missing(names: tuple[str, ...], rows: int, expected: list[int]) -> None:
+    assert rows_of_images([Path(f"{name}.png") for name in names], rows) == expected
+
+
+@pytest.mark.parametrize(
+    ("right", "said"),
+    [
+        ("20 0 16 0 0 20 12 0 0 0 1 0", "camera 1 at 0 m to the right of camera 0, expected above 0"),
+        ("20 0 16 10 0 20 12 0 0 0 1 0", "camera 1 at -0.5 m to the right of camera 0, expected above 0"),
+        ("25 0 16 -10 0 20 12 0 0 0 1 0", "P0 and P1 differ in their first three columns, expected a rectified pair"),
+    ],
+)
+def test_a_pair_that_is_none_is_refused(stereo: Path, right: str, said: str) -> None:
+    (stereo / "calib.txt").write_text(f"{P0}\nP1: {right}\n")
+    with pytest.raises(InputError, match=said):
+        KittiOdometry(stereo)
+
+
+def test_windows_files_with_tabs_are_read(kitti: Path) -> None:
+    (kitti / "calib.txt").write_bytes(b"\xef\xbb\xbf" + P0.replace(": ", ":\t").encode() + b"\r\n")
+    (kitti / "times.txt").write_bytes(b"\xef\xbb\xbf0.0\r\n0.1\r\n0.2\r\n")
+    assert _frame(KittiOdometry(kitti), 2).timestamp_ns == 200_000_000

@@ -143,6 +143,16 @@ def test_without_extrinsics_it_says_that_there_is_no_truth(drive: Path) -> None:
         ("image_02/timestamps.txt", "1.0\n2.0\n3.0\n", r"line 1: '1\.0', expected such as 2011-09-26 13:02:25"),
         ("image_02/timestamps.txt", "2011-13-26 13:02:25\n" * 3, r"line 1: '2011-13-26 13:02:25', expected such as"),
         ("image_02/timestamps.txt", "2011-09-26 13:02:25.5\n" * 3, "line 2: time .* expected times that increase"),
+        (
+            "image_02/timestamps.txt",
+            "1969-12-31 23:59:58\n1969-12-31 23:59:59\n1970-01-01 00:00:00\n",
+            "line 1: .* expected times that increase from 1970",
+        ),
+        (
+            "../calib_velo_to_cam.txt",
+            "R: 0 0 0 0 0 0 0 0 0\nT: 0 0 0\n",
+            r"calib_velo_to_cam\.txt line 1: R is no rotation, expected one",
+        ),
         ("oxts/data/0000000001.txt", "49 8 100\n", r"0000000001\.txt line 1: 3 numbers, expected 30"),
         ("oxts/data/0000000001.txt", "", r"0000000001\.txt: 0 lines, expected one"),
         ("oxts/data/0000000001.txt", "90 " * 30, r"latitude 90, expected one between -90 and 90 degrees"),
@@ -192,7 +202,7 @@ def test_bad_files_of_a_tracking_sequence_are_named(tracking: Path) -> None:
 def test_a_right_camera_with_fewer_images_is_named(tracking: Path) -> None:
     right = tracking.parent.parent / "image_03/0000"
     list_images(right)[0].unlink()
-    with pytest.raises(InputError, match="image_03/0000: 2 images, expected 3"):
+    with pytest.raises(InputError, match=r"image_03/0000: no 000000, expected one for every image in .*image_02/0000"):
         KittiTracking(tracking)
 
 
@@ -202,3 +212,14 @@ def test_poses_of_the_unit_start_at_the_identity() -> None:
     np.testing.assert_allclose(poses[0], np.eye(4), atol=1e-9)
     moved_m = np.linalg.norm(poses[1][:3, 3])
     assert moved_m == pytest.approx(np.hypot(np.cos(np.radians(49)) * EARTH_RADIUS_M * np.radians(1e-5), 1.0))
+
+
+def test_a_tracking_sequence_that_lacks_an_image_keeps_the_times_and_truth_of_the_others(tracking: Path) -> None:
+    whole = KittiTracking(tracking)
+    for camera in ("image_02", "image_03"):
+        (tracking.parent.parent / camera / "0000/000001.png").unlink()
+    frame, expected = _frame(KittiTracking(tracking), 1), _frame(whole, 2)
+    assert frame.timestamp_ns == expected.timestamp_ns == 200_000_000
+    assert frame.true_pose is not None
+    assert expected.true_pose is not None
+    np.testing.assert_array_equal(frame.true_pose.world_from_camera, expected.true_pose.world_from_camera)

@@ -113,3 +113,31 @@ def test_what_is_no_depth_is_one_line() -> None:
     colour = CompressedPixels("camera", "jpeg", cv2.imencode(".jpg", _filled(1, 2, 3))[1].ravel())
     with pytest.raises(InputError, match="format 'jpeg', expected depth as a PNG of 16 bits"):
         depth_pixels(colour, "here")
+
+
+@pytest.mark.parametrize(
+    ("pixels", "encoding"),
+    [
+        (_filled(BLUE, GREEN, RED), "bgr16"),
+        (_filled(RED, GREEN, BLUE), "rgb16"),
+        (_filled(RED, GREEN, BLUE, 255), "rgba16"),
+        (_bayer("gbrg"), "bayer_gbrg16"),
+    ],
+)
+@pytest.mark.parametrize("big_endian", [False, True])
+def test_colours_of_16_bits_are_scaled_to_8(pixels: npt.NDArray[np.uint8], encoding: str, big_endian: bool) -> None:
+    wide = (pixels.astype(np.uint16) << 8 | 77).astype(">u2" if big_endian else "<u2")
+    found = image_pixels(_raw(wide, encoding, big_endian=big_endian), "here")
+    np.testing.assert_array_equal(found[2:-2, 2:-2], _filled(BLUE, GREEN, RED)[2:-2, 2:-2])
+
+
+def test_a_mosaic_in_a_png_becomes_colour() -> None:
+    png = cv2.imencode(".png", _bayer("grbg"))[1].ravel()
+    message = CompressedPixels("camera", "bayer_grbg8; png compressed bayer_grbg8", png)
+    np.testing.assert_array_equal(image_pixels(message, "here")[2:-2, 2:-2], _filled(BLUE, GREEN, RED)[2:-2, 2:-2])
+
+
+def test_half_a_pair_of_pixels_is_one_line() -> None:
+    odd = np.zeros((8, 11, 2), np.uint8)
+    with pytest.raises(InputError, match="here: 11x8 px of yuv422, expected an image of whole pairs of pixels"):
+        image_pixels(_raw(odd, "yuv422"), "here")

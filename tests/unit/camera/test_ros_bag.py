@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of ROS 1 and ROS 2 as inputs: topics, times, depth, calibration, truth, and bags that are broken."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from services.camera.sources.recordings.message_topics import TopicOptions
 from services.camera.sources.recordings.ros_bag import open_ros_bag
 from services.camera.sources.source import SourceFrame
 from services.runtime.errors import InputError
-from tests.unit.camera.bags import KINDS, Ros, Said
+from tests.unit.camera.bags import KINDS, NS_PER_S, Ros, Said
 
 SIZE = (32, 24)
 START_NS = 1_700_000_000_123_456_789
@@ -140,7 +141,7 @@ def test_a_pose_without_a_frame_is_taken_as_the_cameras(ros: Ros, tmp_path: Path
     [
         (
             TopicOptions(),
-            r"2 image topics, expected camera\.topic to name one of /cam/depth \(sensor_msgs/msg/Image, 4\)",
+            r"2 image topics, expected camera\.topic to name one of /cam/image_raw .*, /cam/second \(sensor_msgs",
         ),
         (
             TopicOptions("/front"),
@@ -159,7 +160,8 @@ def test_a_pose_without_a_frame_is_taken_as_the_cameras(ros: Ros, tmp_path: Path
 )
 def test_topics_that_do_not_fit_are_listed(tmp_path: Path, options: TopicOptions, said: str) -> None:
     ros = Ros("sqlite")
-    path = ros.write(tmp_path, _drive(ros))
+    second = ros.image("/cam/second", START_NS, _pixels(0), "bgr8")
+    path = ros.write(tmp_path, [*_drive(ros), second])
     with pytest.raises(InputError, match=said) as caught:
         open_ros_bag(path, options)
     assert "\n" not in str(caught.value)
@@ -180,6 +182,9 @@ def test_calibrations_that_do_not_fit(tmp_path: Path) -> None:
         "size", ros.info("/cam/camera_info", START_NS, (64, 48))
     )
     assert "focal lengths 0 and 0 px" in said_of("focal", ros.info("/cam/camera_info", START_NS, SIZE, focal=0.0))
+    assert "/cam/camera_info: distortion (nan, 0.0, 0.0, 0.0, 0.0), expected finite numbers" in said_of(
+        "nan", ros.info("/cam/camera_info", START_NS, SIZE, d=(float("nan"), 0.0, 0.0, 0.0, 0.0))
+    )
     assert "distortion 'equidistant' of 4 coefficients, expected plumb_bob's" in said_of(
         "fisheye", ros.info("/cam/camera_info", START_NS, SIZE, model="equidistant", d=(0.1, 0.2, 0.3, 0.4))
     )
@@ -203,6 +208,59 @@ def test_a_bag_that_is_cut_off_is_one_line(ros: Ros, tmp_path: Path) -> None:
 def test_an_image_of_another_size_is_named(ros: Ros, tmp_path: Path) -> None:
     messages = _drive(ros)
     small = ros.image("/cam/image_raw", START_NS + 9 * STEP_NS, np.zeros((5, 6), np.uint8), "mono8")
-    source = open_ros_bag(ros.write(tmp_path, [*messages, small]), TopicOptions("/cam/image_raw"))
+    options = TopicOptions("/cam/image_raw", use_depth=False)
+    source = open_ros_bag(ros.write(tmp_path, [*messages, small]), options)
     with pytest.raises(InputError, match="/cam/image_raw message 4: 6x5 px, expected 32x24 as the first image"):
         source.frame(4)
+
+
+def test_depth_of_the_images_own_frame_is_taken_without_being_named(ros: Ros, tmp_path: Path) -> None:
+    source = open_ros_bag(ros.write(tmp_path, _drive(ros)), TopicOptions())
+    depth = _frame(source, 2).depth
+    assert depth is not None
+    assert depth.depth_m[5, 5] == 3.0
+    assert "/cam/depth is taken as the images' depth: same size and frame" in source.notes
+
+
+@pytest.mark.parametrize("why", ["frame", "size", "encoding", "several", "few"])
+def test_depth_that_is_not_the_images_needs_to_be_named(tmp_path: Path, why: str) -> None:
+    ros = Ros("sqlite")
+    images = [ros.image("/cam/image_raw", START_NS + STEP_NS * index, _pixels(index), "bgr8") for index in range(4)]
+    size = (5, 6) if why == "size" else SIZE[::-1]
+    levels = np.full(size, 100, np.uint8 if why == "encoding" else np.uint16)
+    depth = ros.image("/cam/depth", START_NS, levels, "8UC1" if why == "encoding" else "16UC1")
+    depths = [depth._replace(recorded_ns=START_NS + index) for index in range(1)] if why == "few" else []
+    if why != "few":
+        depths = [
+            ros.image("/cam/depth", START_NS + STEP_NS * index, levels, depth.message.encoding) for index in range(4)
+        ]
+    if why == "several":
+        depths += [one._replace(topic="/other/depth") for one in depths]
+    if why == "frame":
+        moved = ros.header(START_NS, "depth_optical")
+        depths = [one._replace(message=dataclasses.replace(one.message, header=moved)) for one in depths]
+    info = ros.info("/cam/camera_info", START_NS, SIZE)
+    source = open_ros_bag(ros.write(tmp_path, [info, *images, *depths]), TopicOptions())
+    assert source.frame_count == 4
+    assert _frame(source, 0).depth is None
+    (note,) = [note for note in source.notes if "depth" in note]
+    said = {
+        "several": "several could be the images' depth (/cam/depth, /other/depth)",
+        "few": "only 1 of 4 images have one within 0.02 s (/cam/depth)",
+    }.get(why, "none is of the images' size and frame (/cam/depth)")
+    assert note == f"depth is not used: {said}; camera.depth_topic names one"
+
+
+def test_nonsense_times_and_transforms_are_one_line(tmp_path: Path) -> None:
+    ros = Ros("sqlite")
+    info = ros.info("/cam/camera_info", START_NS, SIZE)
+    early = ros.image("/cam/image_raw", -5 * NS_PER_S, _pixels(0), "bgr8")._replace(recorded_ns=START_NS)
+    with pytest.raises(InputError, match="/cam/image_raw: time -5000000000 ns, expected times from 1970 on"):
+        open_ros_bag(ros.write(tmp_path, [info, early]), TopicOptions())
+    nowhere = ros.static_transform(START_NS, "base_link", "camera_optical", (0, 0, 0, 0, 0, 0, 0))
+    odometry = ros.odometry("/odom", START_NS, (0, 0, 0, 0, 0, 0, 1), "base_link")
+    image = ros.image("/cam/image_raw", START_NS, _pixels(0), "bgr8")
+    (tmp_path / "tf").mkdir()
+    path = ros.write(tmp_path / "tf", [info, image, nowhere, odometry])
+    with pytest.raises(InputError, match=r"/tf_static: camera_optical in base_link is at .* expected a position and a"):
+        open_ros_bag(path, TopicOptions(truth="/odom"))

@@ -137,3 +137,10 @@ def test_bad_depth_and_calibration(tum: Path) -> None:
         TumRgbd(tum, depth=False)
     with pytest.raises(InputError, match=r"32x24 px, expected 640x480 as of freiburg1's camera"):
         TumRgbd(tum.rename(tum.parent / "freiburg1_small"), depth=False)
+
+
+def test_lists_of_windows_with_tabs_and_odd_names_are_read(tum: Path) -> None:
+    (tum / "rgb").rename(tum / "f\u00e4rg bilder")
+    rows = "".join(f"{time}\tf\u00e4rg bilder/{time}.png\r\n" for time in COLOUR_S)
+    (tum / "rgb.txt").write_bytes(b"\xef\xbb\xbf" + rows.encode())
+    assert _frame(TumRgbd(tum, depth=False), 3).name == COLOUR_S[3]

@@ -60,13 +60,16 @@ def read_camera(path: Path) -> EurocCamera:
     fx, fy, cx, cy = _numbers(path, "intrinsics", values["intrinsics"])
     if min(width, height, fx, fy) <= 0:
         raise InputError(f"{path}: resolution {width:g}x{height:g}, focal lengths {fx:g} {fy:g}, expected above 0")
+    rate_hz = _numbers(path, "rate_hz", values["rate_hz"])[0]
+    if rate_hz <= 0:
+        raise InputError(f"{path}: rate_hz {rate_hz:g}, expected above 0")
     distortion = _numbers(path, "distortion_coefficients", values["distortion_coefficients"])
     return EurocCamera(
         (int(width), int(height)),
         np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]]),
         (*distortion, *(0.0,) * (5 - len(distortion))),
         body_from_camera,
-        _numbers(path, "rate_hz", values["rate_hz"])[0],
+        rate_hz,
     )
 
 

@@ -27,7 +27,7 @@ class ImageFolder(IndexedSource):
         images = ImageFiles(folder / _IMAGES if (folder / _IMAGES).is_dir() else folder)
         model = read_calibration(find_calibration(calibration, *(folder / name for name in CALIBRATION_NAMES)))
         camera = model.for_images(images.size, images.paths[0]).record(0)
-        times_ns, rate_hz, notes = times_of_folder(folder, len(images), rate_hz or model.rate_hz)
+        times_ns, rate_hz, notes = times_of_folder(folder, images.paths, rate_hz or model.rate_hz)
         super().__init__(
             f"images of {folder.resolve().name}", times_ns, rate_hz, CameraImages(images, camera), notes=notes
         )

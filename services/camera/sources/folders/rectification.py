@@ -17,6 +17,10 @@ from services.runtime.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
+# Rectified images keep what both cameras see; from a tenth of the image on nothing is won by a pair.
+_MOST_ZOOM = 10.0
+_LEAST_BASELINE_M = 1e-4
+
 
 class RectifiedImages:
     """`images` as a rectified camera would have taken them.
@@ -66,9 +70,11 @@ def rectify(left: CameraImages, right: CameraImages, right_from_left: Array, whe
     """The rectified pair; `right_from_left` is (4, 4) in metres between the cameras as they are, `where` names them.
 
     Raises:
-        InputError: the right camera is not right of the left one.
+        InputError: the right camera is not right of the left one, or nothing is left of the images.
     """
     size = left.images.size
+    if not np.linalg.norm(right_from_left[:3, 3]) > _LEAST_BASELINE_M:
+        raise InputError(f"{where}: where the left camera is, expected right of it")
     left_rotation, right_rotation, left_projection, right_projection, *_ = cv2.stereoRectify(
         left.calibration.intrinsics,
         np.array(left.calibration.distortion),
@@ -83,6 +89,12 @@ def rectify(left: CameraImages, right: CameraImages, right_from_left: Array, whe
     if not right_projection[0, 3] < 0:
         x, y, z = np.linalg.inv(right_from_left)[:3, 3]
         raise InputError(f"{where}: at x {x:.3f}, y {y:.3f}, z {z:.3f} m of the left camera, expected right of it")
+    focal_px, rectified_px = left.calibration.intrinsics[0, 0], left_projection[0, 0]
+    if not focal_px / _MOST_ZOOM < rectified_px < focal_px * _MOST_ZOOM:
+        raise InputError(
+            f"{where}: rectified with the left one, a focal length of {rectified_px:.4g} px instead of {focal_px:.4g}; "
+            "expected two cameras that see the same, with the distortion of their lenses"
+        )
     camera_from_rectified = np.eye(4)
     camera_from_rectified[:3, :3] = left_rotation.T
     return RectifiedStereo(

@@ -84,11 +84,11 @@ class TumRgbd(IndexedSource):
 def _read_listing(path: Path) -> list[TimedFile]:
     rows: list[TimedFile] = []
     for line_number, line in read_lines(path):
-        time, _, name = line.partition(" ")
-        if not name.strip():
+        time, *names = line.split(maxsplit=1)
+        if not names:
             raise InputError(f"{path} line {line_number}: {line!r}, expected a time in seconds and a file's name")
         time_ns = parse_time_ns(path, line_number, time, rows[-1][0] if rows else -1)
-        rows.append((time_ns, path.parent / name.strip()))
+        rows.append((time_ns, path.parent / names[0]))
     if not rows:
         raise InputError(f"{path}: no images listed, expected lines of a time in seconds and a file's name")
     return rows

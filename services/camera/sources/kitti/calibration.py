@@ -28,11 +28,11 @@ def read_projections(path: Path) -> dict[str, npt.NDArray[np.float64]]:
         raise InputError(f"calibration {path}: no such file, expected KITTI's calib.txt with a line 'P0: <12 numbers>'")
     projections = {}
     for line_number, line in read_lines(path):
-        name, _, numbers = line.partition(" ")
+        name, *numbers = line.split(maxsplit=1)
         match = _PROJECTION_NAME.fullmatch(name)
         if match is None:
             continue
-        projection = np.reshape(parse_numbers(path, line_number, numbers, 12), (3, 4))
+        projection = np.reshape(parse_numbers(path, line_number, "".join(numbers), 12), (3, 4))
         if projection[0, 0] <= 0 or projection[1, 1] <= 0 or projection[2, 2] != 1:
             raise InputError(
                 f"{path} line {line_number}: focal lengths {projection[0, 0]:g} and {projection[1, 1]:g} px over "

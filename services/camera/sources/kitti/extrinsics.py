@@ -11,6 +11,9 @@ from services.runtime.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
+# KITTI writes seven digits.
+_TOLERANCE = 1e-3
+
 
 class KittiValues:
     """The named numbers of a calibration file. Raises InputError for a file that cannot be read."""
@@ -19,15 +22,22 @@ class KittiValues:
         self._path = path
         self._lines = {}
         for line_number, line in read_lines(path):
-            name, _, numbers = line.partition(" ")
-            self._lines[name.rstrip(":")] = (line_number, numbers)
+            name, *numbers = line.split(maxsplit=1)
+            self._lines[name.rstrip(":")] = (line_number, "".join(numbers))
 
     def transform(self, *names: str) -> Array:
-        """(4, 4) of the first of `names` that is there: 3x4 or 3x3 numbers by rows. Raises InputError."""
+        """(4, 4) of the first of `names` that is there: 3x4 or 3x3 numbers by rows.
+
+        Raises:
+            InputError: none of them is there, other numbers, or numbers that are no rotation.
+        """
         name = next((name for name in names if name in self._lines), names[0])
         count = 9 if name.startswith("R") else 12
         matrix = np.eye(4)
         matrix[:3, : count // 3] = np.reshape(self.numbers(name, count), (3, count // 3))
+        rotation = matrix[:3, :3]
+        if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=_TOLERANCE) and np.linalg.det(rotation) > 0):
+            raise InputError(f"{self._path} line {self._lines[name][0]}: {name} is no rotation, expected one")
         return matrix
 
     def rotation_and_translation(self) -> Array:

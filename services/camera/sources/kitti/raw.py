@@ -104,8 +104,8 @@ def _read_times_ns(path: Path, indices: list[int]) -> list[int]:
     for index in indices:
         line_number, line = lines[index]
         time_ns = _parse_date_ns(path, line_number, line)
-        if times_ns and time_ns <= times_ns[-1]:
-            raise InputError(f"{path} line {line_number}: time {line}, expected times that increase")
+        if time_ns <= (times_ns[-1] if times_ns else -1):
+            raise InputError(f"{path} line {line_number}: time {line}, expected times that increase from 1970")
         times_ns.append(time_ns)
     return times_ns
 

@@ -63,8 +63,7 @@ def calibrated_pair(path: Path, left: NumberedImages, right: NumberedImages | No
 def _right_of(
     path: Path, left: NumberedImages, left_projection: Array, right: NumberedImages, projections: dict[str, Array]
 ) -> CameraImages:
-    if len(right.images) != len(left.images):
-        raise InputError(f"{right.folder}: {len(right.images)} images, expected {len(left.images)}")
+    _expect_partners(left, right)
     if right.images.size != left.images.size:
         raise InputError(
             f"{right.folder}: images of {'x'.join(map(str, right.images.size))} px, "
@@ -73,8 +72,29 @@ def _right_of(
     if f"P{right.number}" not in projections:
         raise InputError(f"{path}: no line 'P{right.number}:', expected one for the stereo images in {right.folder}")
     projection = projections[f"P{right.number}"].copy()
+    if not np.allclose(projection[:, :3], left_projection[:, :3]):
+        raise InputError(
+            f"{path}: P{left.number} and P{right.number} differ in their first three columns, expected a rectified pair"
+        )
     projection[:, 3] -= left_projection[:, 3]
+    if not projection[0, 3] < 0:
+        baseline_m = 0.0 - projection[0, 3] / projection[0, 0]
+        raise InputError(
+            f"{path}: camera {right.number} at {baseline_m:g} m to the right of camera {left.number}, expected above 0"
+        )
     return CameraImages(right.images, _calibration(right.images, projection, "camera_right"))
+
+
+def _expect_partners(left: NumberedImages, right: NumberedImages) -> None:
+    """Every image has one of the same name on the other side."""
+    lefts, rights = ([side.images.name(index) for index in range(len(side.images))] for side in (left, right))
+    if lefts == rights:
+        return
+    for ours, names, theirs in ((left, set(rights), lefts), (right, set(lefts), rights)):
+        alone = [name for name in theirs if name not in names]
+        if alone:
+            other = right if ours is left else left
+            raise InputError(f"{other.folder}: no {alone[0]}, expected one for every image in {ours.folder}")
 
 
 def _calibration(images: Images, projection: Array, frame_id: str) -> CameraCalibration:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from services.camera.sources.folders.image_files import ImageFiles, list_images
-from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, even_times_ns, read_lines
+from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, even_times_ns, read_lines, rows_of_images
 from services.camera.sources.indexed_source import IndexedSource
 from services.camera.sources.kitti.extrinsics import KittiValues
 from services.camera.sources.kitti.oxts import parse_oxts, world_from_camera
@@ -37,7 +37,8 @@ class KittiTracking(IndexedSource):
     """image_02/0000 (left) and image_03/0000 (right), with calib/0000.txt and oxts/0000.txt two folders up.
 
     The benchmark gives no times: the images are 10 a second. True poses come from oxts where it is there, as in the
-    raw data; their world is the first frame's camera 0.
+    raw data; their world is the first image's camera 0. Some sequences lack images (0001 lacks four): the numbers in
+    the names say which of the oxts' rows, and so which times, are theirs.
 
     Args:
         folder: the sequence's folder of left images.
@@ -63,24 +64,29 @@ class KittiTracking(IndexedSource):
             rate_hz = ASSUMED_RATE_HZ
             notes.append(f"KITTI tracking gives no times: they are assumed at {rate_hz:g} Hz")
         oxts = split / "oxts" / f"{sequence}.txt"
-        if not oxts.is_file():
+        rows = list(range(len(images)))
+        truth = None
+        if oxts.is_file():
+            lines = read_lines(oxts)
+            if len(lines) < len(images):
+                raise InputError(f"{oxts}: {len(lines)} lines, expected {len(images)}, one for every image")
+            rows = rows_of_images(images.paths, len(lines))
+            truth = _truth(oxts, [lines[row] for row in rows], calibration, pair)
+        else:
             notes.append(f"no true pose: no oxts/{sequence}.txt")
         super().__init__(
             f"KITTI tracking {split.name} {sequence}",
-            even_times_ns(len(images), rate_hz),
+            even_times_ns(rows, rate_hz),
             rate_hz,
             pair.left,
             right=pair.right,
-            world_from_camera=_read_truth(oxts, calibration, len(images), pair) if oxts.is_file() else None,
+            world_from_camera=truth,
             notes=notes,
         )
 
 
-def _read_truth(oxts: Path, calibration: Path, frames: int, pair: KittiPair) -> npt.NDArray[np.float64]:
-    lines = read_lines(oxts)
-    if len(lines) < frames:
-        raise InputError(f"{oxts}: {len(lines)} lines, expected {frames}, one for every image")
-    rows = np.array([parse_oxts(oxts, line_number, line) for line_number, line in lines[:frames]])
+def _truth(oxts: Path, lines: list[tuple[int, str]], calibration: Path, pair: KittiPair) -> npt.NDArray[np.float64]:
+    rows = np.array([parse_oxts(oxts, *line) for line in lines])
     values = KittiValues(calibration)
     # The benchmark's own files and those of its object sibling spell the names differently.
     velodyne = values.transform("Tr_velo_cam", "Tr_velo_to_cam")

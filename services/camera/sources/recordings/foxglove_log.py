@@ -53,7 +53,7 @@ class FoxgloveLog:
         self._stream = path.open("rb")
         try:
             with self._as_input_error():
-                self._reader = make_reader(self._stream)
+                self._reader = make_reader(self._stream, validate_crcs=True)
                 summary = self._reader.get_summary()
                 if summary is None:
                     raise InputError(f"{path}: no index, expected a whole MCAP file")

@@ -41,6 +41,8 @@ def calibration_of(
 def _plumb_bob(info: CameraInfo, where: str) -> tuple[float, ...]:
     if not any(info.distortion):
         return ()
+    if not np.isfinite(info.distortion).all():
+        raise InputError(f"{where}: distortion {info.distortion}, expected finite numbers, or camera.calibration")
     if info.distortion_model not in _MODELS or any(info.distortion[_COEFFICIENTS:]):
         raise InputError(
             f"{where}: distortion {info.distortion_model!r} of {len(info.distortion)} coefficients, "

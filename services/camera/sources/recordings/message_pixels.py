@@ -16,8 +16,12 @@ _COLOURS: Final = MappingProxyType({
     "mono8": (1, 1, None), "8UC1": (1, 1, None), "mono16": (2, 1, None),
     "bgr8": (1, 3, None), "8UC3": (1, 3, None), "rgb8": (1, 3, cv2.COLOR_RGB2BGR),
     "bgra8": (1, 4, cv2.COLOR_BGRA2BGR), "8UC4": (1, 4, cv2.COLOR_BGRA2BGR), "rgba8": (1, 4, cv2.COLOR_RGBA2BGR),
+    "bgr16": (2, 3, None), "16UC3": (2, 3, None), "rgb16": (2, 3, cv2.COLOR_RGB2BGR),
+    "bgra16": (2, 4, cv2.COLOR_BGRA2BGR), "rgba16": (2, 4, cv2.COLOR_RGBA2BGR),
     "bayer_rggb8": (1, 1, cv2.COLOR_BayerRGGB2BGR), "bayer_bggr8": (1, 1, cv2.COLOR_BayerBGGR2BGR),
     "bayer_gbrg8": (1, 1, cv2.COLOR_BayerGBRG2BGR), "bayer_grbg8": (1, 1, cv2.COLOR_BayerGRBG2BGR),
+    "bayer_rggb16": (2, 1, cv2.COLOR_BayerRGGB2BGR), "bayer_bggr16": (2, 1, cv2.COLOR_BayerBGGR2BGR),
+    "bayer_gbrg16": (2, 1, cv2.COLOR_BayerGBRG2BGR), "bayer_grbg16": (2, 1, cv2.COLOR_BayerGRBG2BGR),
     "yuv422": (1, 2, cv2.COLOR_YUV2BGR_UYVY), "uyvy": (1, 2, cv2.COLOR_YUV2BGR_UYVY),
     "yuv422_yuy2": (1, 2, cv2.COLOR_YUV2BGR_YUY2), "yuyv": (1, 2, cv2.COLOR_YUV2BGR_YUY2),
 })  # fmt: skip
@@ -35,14 +39,16 @@ def image_pixels(message: RawPixels | CompressedPixels, where: str) -> npt.NDArr
         InputError: an unknown encoding, or bytes that are cut off or no image.
     """
     if isinstance(message, CompressedPixels):
-        return np.asarray(_decoded(message.data, cv2.IMREAD_ANYCOLOR, message.format, where), dtype=np.uint8)
-    pixels = _rows(message, _COLOURS, where)
-    if pixels.dtype.itemsize == 2:
-        return (pixels >> 8).astype(np.uint8)
-    conversion = _COLOURS[message.encoding][2]
-    if conversion is None:
-        return np.ascontiguousarray(pixels)
-    return np.asarray(cv2.cvtColor(np.ascontiguousarray(pixels), conversion), dtype=np.uint8)
+        flags = cv2.IMREAD_ANYCOLOR | cv2.IMREAD_IGNORE_ORIENTATION
+        pixels = np.asarray(_decoded(message.data, flags, message.format, where), dtype=np.uint8)
+        # `bayer_rggb8; png compressed bayer_rggb8`: the last word is what the file holds.
+        held = message.format.split()[-1:]
+        mosaic = bool(held) and held[0].startswith("bayer_") and held[0] in _COLOURS and pixels.ndim == 2
+        return _converted(pixels, held[0], where) if mosaic else pixels
+    rows = _rows(message, _COLOURS, where)
+    if rows.dtype.itemsize == 2:
+        rows = (rows >> 8).astype(np.uint8)
+    return _converted(np.ascontiguousarray(rows), message.encoding, where)
 
 
 def depth_pixels(message: RawPixels | CompressedPixels, where: str) -> npt.NDArray[np.float32]:
@@ -63,6 +69,18 @@ def depth_pixels(message: RawPixels | CompressedPixels, where: str) -> npt.NDArr
         return depth_m / np.float32(_LEVELS_PER_METRE)
     depth_m[~(np.isfinite(depth_m) & (depth_m > 0))] = 0.0
     return depth_m
+
+
+def _converted(pixels: npt.NDArray[np.uint8], encoding: str, where: str) -> npt.NDArray[np.uint8]:
+    """Grey stays grey, all else becomes blue-green-red."""
+    conversion = _COLOURS[encoding][2]
+    if conversion is None:
+        return pixels
+    try:
+        return np.asarray(cv2.cvtColor(pixels, conversion), dtype=np.uint8)
+    except cv2.error:
+        size = f"{pixels.shape[1]}x{pixels.shape[0]} px"
+        raise InputError(f"{where}: {size} of {encoding}, expected an image of whole pairs of pixels") from None
 
 
 def _rows(message: RawPixels, known: MappingProxyType[str, Any], where: str) -> npt.NDArray[Any]:

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from schemas.codec.rigid import matrix_from_pose
 from schemas.records import CameraCalibration
@@ -13,58 +12,22 @@ from services.camera.sources.association import FARTHEST_NS, nearest_pairs
 from services.camera.sources.calibration_file import find_calibration, read_calibration
 from services.camera.sources.folders.number_rows import ASSUMED_RATE_HZ, rate_of
 from services.camera.sources.indexed_source import CameraImages, IndexedSource, Pose
+from services.camera.sources.recordings.depth_choice import registered_depth
 from services.camera.sources.recordings.frame_tree import FrameTree
 from services.camera.sources.recordings.message_calibration import calibration_of
+from services.camera.sources.recordings.message_images import LoggedDepths, LoggedImages
 from services.camera.sources.recordings.message_log import LoggedMessage, MessageLog
-from services.camera.sources.recordings.message_pixels import depth_pixels, image_pixels
 from services.camera.sources.recordings.message_topics import ChosenTopics, TopicOptions, choose_topics
 from services.camera.sources.true_path import note_of_missing, poses_at
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
 
 
-class LoggedImages:
-    """The images of a topic by index; the first one tells the size of all."""
-
-    def __init__(self, log: MessageLog, topic: str, places: Sequence[LoggedMessage]) -> None:
-        self._log, self._topic, self._places = log, topic, places
-        pixels = image_pixels(log.image(topic, places[0]), f"{log.name} {topic} message 0")
-        self.size = (pixels.shape[1], pixels.shape[0])
-
-    def __len__(self) -> int:
-        return len(self._places)
-
-    def name(self, index: int) -> str:
-        """The image's number; recordings give no names."""
-        return f"{index:06d}"
-
-    def read(self, index: int) -> npt.NDArray[np.uint8]:
-        """The pixels. Raises InputError for a broken message or one of another size."""
-        where = f"{self._log.name} {self._topic} message {index}"
-        pixels = image_pixels(self._log.image(self._topic, self._places[index]), where)
-        _expect_size(where, pixels.shape, self.size)
-        return pixels
-
-
-class LoggedDepths:
-    """The depth images of a topic by index, of the images' size."""
-
-    def __init__(self, log: MessageLog, topic: str, places: Sequence[LoggedMessage], size: tuple[int, int]) -> None:
-        self._log, self._topic, self._places, self._size = log, topic, places, size
-        self.read(0)
-
-    def read(self, index: int) -> npt.NDArray[np.float32]:
-        """Metres. Raises InputError for a broken message or one of another size."""
-        where = f"{self._log.name} {self._topic} message {index}"
-        depth_m = depth_pixels(self._log.image(self._topic, self._places[index]), where)
-        _expect_size(where, depth_m.shape, self._size)
-        return depth_m
-
-
 class MessageSource(IndexedSource):
     """The images of one topic, with depth, calibration and truth of others.
 
-    Frames are in the order of their headers' times. Depth is taken as registered to the images; an image without
+    Frames are in the order of their headers' times. Depth that the user named is taken as registered to the images;
+    where he named none, the one topic is used whose depth images are of the images' size and frame. An image without
     depth within 0.02 s is left out. The recording is closed with the source, or when it cannot be used.
 
     Args:
@@ -82,17 +45,18 @@ class MessageSource(IndexedSource):
     ) -> None:
         self._log = log
         try:
-            self._open(log, choose_topics(log, options), calibration, beside)
+            self._open(log, choose_topics(log, options), (calibration, beside))
         except BaseException:
             log.close()
             raise
 
-    def _open(self, log: MessageLog, topics: ChosenTopics, calibration: Path | None, beside: Sequence[Path]) -> None:
+    def _open(self, log: MessageLog, topics: ChosenTopics, files: tuple[Path | None, Sequence[Path]]) -> None:
         notes: list[str] = []
         places = _increasing(log, topics.image, notes)
         depth_places: list[LoggedMessage] = []
-        if topics.depth is not None:
-            places, depth_places = _with_depth(log, topics.image, topics.depth, places, notes)
+        depth = topics.depth or registered_depth(log, topics, places, notes)
+        if depth is not None:
+            places, depth_places = _with_depth(log, topics.image, depth, places, notes)
         images = LoggedImages(log, topics.image, places)
         times_ns = [place.stamp_ns for place in places]
         poses = None
@@ -103,8 +67,8 @@ class MessageSource(IndexedSource):
             f"{log.name} {topics.image}",
             times_ns,
             rate_of(times_ns, ASSUMED_RATE_HZ),
-            CameraImages(images, _calibration(log, topics, images.size, (calibration, beside), notes)),
-            depths=None if topics.depth is None else LoggedDepths(log, topics.depth, depth_places, images.size),
+            CameraImages(images, _calibration(log, topics, images.size, files, notes)),
+            depths=None if depth is None else LoggedDepths(log, depth, depth_places, images.size),
             world_from_camera=poses,
             notes=notes,
         )
@@ -114,16 +78,13 @@ class MessageSource(IndexedSource):
         self._log.close()
 
 
-def _expect_size(where: str, shape: tuple[int, ...], size: tuple[int, int]) -> None:
-    if (shape[1], shape[0]) != size:
-        raise InputError(f"{where}: {shape[1]}x{shape[0]} px, expected {size[0]}x{size[1]} as the first image")
-
-
 def _increasing(log: MessageLog, topic: str, notes: list[str]) -> list[LoggedMessage]:
     """A topic's messages by time, each time once. Raises InputError when there is none."""
     found = sorted(log.index(topic))
     if not found:
         raise InputError(f"{log.name}: no messages of {topic}, expected at least one")
+    if found[0].stamp_ns < 0:
+        raise InputError(f"{log.name} {topic}: time {found[0].stamp_ns} ns, expected times from 1970 on")
     kept = [place for before, place in zip([None, *found], found, strict=False)
             if before is None or place.stamp_ns > before.stamp_ns]  # fmt: skip
     if len(kept) < len(found):

@@ -29,6 +29,8 @@ class ChosenTopics:
     depth: str | None
     info: str | None
     truth: str | None
+    possible_depths: tuple[str, ...] = ()
+    """where depth was not named: topics that could be it by their names"""
 
 
 def choose_topics(log: MessageLog, options: TopicOptions) -> ChosenTopics:
@@ -39,11 +41,13 @@ def choose_topics(log: MessageLog, options: TopicOptions) -> ChosenTopics:
             and nothing says which one; lists what there is.
     """
     image = _named(log, "image", options.image) if options.image else _only_image(log)
+    depth = _named(log, "image", options.depth, "camera.depth_topic") if options.depth else None
     return ChosenTopics(
         image,
-        _named(log, "image", options.depth, "camera.depth_topic") if options.depth and options.use_depth else None,
+        depth if options.use_depth else None,
         _named(log, "info", options.info) if options.info else _info_of(log, image),
         _named(log, "pose", options.truth) if options.truth else None,
+        _depths_beside(log, image) if options.use_depth and depth is None else (),
     )
 
 
@@ -63,8 +67,17 @@ def _named(log: MessageLog, kind: Kind, name: str, option: str | None = None) ->
     return name
 
 
+def _depths_beside(log: MessageLog, image: str) -> tuple[str, ...]:
+    return tuple(topic.name for topic in _of_kind(log, "image") if _is_called_depth(topic) and topic.name != image)
+
+
+def _is_called_depth(topic: LoggedTopic) -> bool:
+    return "depth" in topic.name.lower()
+
+
 def _only_image(log: MessageLog) -> str:
-    known = _of_kind(log, "image")
+    images = _of_kind(log, "image")
+    known = [topic for topic in images if not _is_called_depth(topic)] or images
     if not known:
         raise InputError(f"{log.name}: no image topic, expected images of sensor_msgs or foxglove")
     if len(known) > 1:

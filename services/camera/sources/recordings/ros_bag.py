@@ -122,7 +122,11 @@ class RosBag:
         for place in self.index(_STATIC_TRANSFORMS):
             for one in self._message(_STATIC_TRANSFORMS, place).transforms:
                 pose = _vector(one.transform.translation, one.transform.rotation)
-                found.append(StaticTransform(one.header.frame_id, one.child_frame_id, matrix_from_pose(pose)))
+                parent, child = one.header.frame_id, one.child_frame_id
+                if not (np.isfinite(pose).all() and pose[3:].any()):
+                    raise InputError(f"{self.name} {_STATIC_TRANSFORMS}: {child} in {parent} is at {pose.tolist()}, "
+                                     "expected a position and a unit quaternion")  # fmt: skip
+                found.append(StaticTransform(parent, child, matrix_from_pose(pose)))
         return found
 
     def close(self) -> None:
