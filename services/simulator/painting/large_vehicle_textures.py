@@ -237,3 +237,17 @@ def paint_plain(rng: np.random.Generator, colour: Colour) -> Image:
     for x in (0, 64):
         cv2.line(canvas, (x, 0), (x, 127), (120.0, 120.0, 120.0), 2)
     return to_image(canvas)
+
+
+def paint_glass(rng: np.random.Generator) -> Image:
+    """A car's windscreen or rear window: sky mirrored in its upper part, head rests and a mirror behind it."""
+    canvas = coloured(noise(rng, 128, 128, [(3, 14.0), (9, 12.0), (24, 8.0)]), (62.0, 58.0, 54.0))
+    for x in (34, 94):
+        cv2.rectangle(canvas, (x - 9, 62), (x + 9, 84), (30.0, 30.0, 32.0), -1)
+        cv2.rectangle(canvas, (x - 20, 88), (x + 20, 127), (38.0, 36.0, 36.0), -1)
+    cv2.rectangle(canvas, (56, 10), (72, 17), (24.0, 24.0, 26.0), -1)
+    shine = np.interp(np.arange(128.0), [0.0, 40.0, 100.0], [0.62, 0.28, 0.06]).astype(np.float32)[:, None, None]
+    sky = coloured(noise(rng, 128, 128, [(3, 18.0), (7, 14.0)]), (196.0, 176.0, 158.0))
+    canvas = canvas * (1.0 - shine) + sky * shine
+    cv2.rectangle(canvas, (0, 0), (127, 127), (26.0, 26.0, 26.0), 2)
+    return to_image(canvas)

@@ -31,6 +31,7 @@ def paint_traffic(seed: int) -> dict[str, Image]:
     for k in range(FIRMS):
         painters[f"delivery_left_{k}"] = partial(large.paint_delivery_side, firm=k, doors=False)
         painters[f"delivery_right_{k}"] = partial(large.paint_delivery_side, firm=k, doors=True)
+    painters["town_glass"] = large.paint_glass
     painters["cab_left"] = partial(large.paint_cab_side, right=False)
     painters["cab_right"] = partial(large.paint_cab_side, right=True)
     painters["cab_front"] = large.paint_cab_front

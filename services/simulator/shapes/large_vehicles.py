@@ -125,7 +125,7 @@ def delivery_mesh(paint: Tint, firm: int, texture: Mapping[str, int]) -> Mesh:
         (front, 0.35),
     )
     panel = (texture["car_panel"], paint)
-    skins = [panel, panel, panel, panel, (texture["car_glass"], WHITE), panel, (texture["car_front"], paint), panel]
+    skins = [panel, panel, panel, panel, (texture["town_glass"], WHITE), panel, (texture["car_front"], paint), panel]
     left, right = texture[f"delivery_left_{firm}"], texture[f"delivery_right_{firm}"]
     pieces = [
         body(outline, 1.02, (left, right), skins, tint=paint, lean=0.05),

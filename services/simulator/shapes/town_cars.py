@@ -32,7 +32,7 @@ TAXI_PAINT: Tint = (0.62, 0.88, 0.98)
 
 def town_car_mesh(name: str, paint: Tint, texture: Mapping[str, int]) -> Mesh:
     """A car of one of `BODIES` in a paint (factors of blue, green, red); taxis have their own."""
-    body = car_mesh(BODIES[name], TAXI_PAINT if name == "taxi" else paint, texture)
+    body = car_mesh(BODIES[name], TAXI_PAINT if name == "taxi" else paint, texture, "town_glass")
     panel, dark = texture["car_panel"], texture["rubber"]
     if name == "taxi":
         sign = box((0.2, 0.5, 0.18), (-0.3, 0.0, 1.57), texture["plate"], 0.5, tint=(0.3, 0.9, 1.0))

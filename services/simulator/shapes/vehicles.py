@@ -115,8 +115,8 @@ PAINTS: tuple[Tint, ...] = (
 )
 
 
-def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int]) -> Mesh:
-    """A car of one body style and paint (factors of blue, green, red)."""
+def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int], glass: str = "car_glass") -> Mesh:
+    """A car of one body style and paint (factors of blue, green, red); glass: texture of windscreen and rear window."""
     outline = np.array(style.outline)
     left = np.column_stack([outline[:, 0], _half_width(style, outline[:, 1]), outline[:, 1]])
     right = left * [1.0, -1.0, 1.0]
@@ -126,7 +126,7 @@ def car_mesh(style: BodyStyle, paint: Tint, texture: Mapping[str, int]) -> Mesh:
     for k in range(len(outline) - 1):
         corners = np.stack([left[k + 1], right[k + 1], right[k], left[k]])
         if k in (style.rear_glass, style.windscreen):
-            pieces.append(quads(corners, _UNIT, texture["car_glass"]))
+            pieces.append(quads(corners, _UNIT, texture[glass]))
         elif k in (0, 1):
             pieces.append(quads(corners, _half(k == 1), texture["car_rear"], paint))
         elif k in (last, last - 1):

@@ -37,7 +37,7 @@ class LoopPath:
     """Along the loop from `s_m` in `direction` (+1 or -1) at offset `n_m`, with shifts on the way.
 
     The way gone is counted along the centre line, so that all lanes share one coordinate. sway: nobody drives as on
-    rails.
+    rails. leeway: (K,) further offset at equal steps of s over one round.
     """
 
     def __init__(
@@ -49,16 +49,19 @@ class LoopPath:
         *,
         shifts: tuple[Shift, ...] = (),
         sway: Sway | None = None,
+        leeway: Floats | None = None,
     ) -> None:
         self._plan, self._direction, self._s_m, self._n_m = plan, direction, s_m, n_m
         self._shifts = np.array([(shift.begin_m, shift.length_m, shift.by_m) for shift in shifts]).reshape(-1, 3)
-        self._sway = sway
+        self._sway, self._leeway = sway, leeway
 
     def point(self, distance_m: Floats | float) -> Floats:
         """World position on the ground, (..., 3)."""
         gone = np.asarray(distance_m, np.float64)
         s = self._s_m + self._direction * gone
         n = self._n_m + self._shifted(gone)
+        if self._leeway is not None:
+            n = n + _round_table(self._leeway, s / self._plan.loop.length_m)
         if self._sway is not None:
             n = n + self._sway.amplitude_m * np.sin(gone * (2.0 * np.pi / self._sway.wave_m) + self._sway.phase_rad)
         plane = self._plan.loop.point(s, n)
@@ -162,3 +165,10 @@ def equally_spaced(points: Floats, step_m: float) -> tuple[Floats, float]:
     count = max(2, int(np.ceil(way[-1] / step_m)) + 1)
     at = np.linspace(0.0, way[-1], count)
     return np.column_stack([np.interp(at, way, points[:, axis]) for axis in (0, 1)]), float(at[1])
+
+
+def _round_table(table: Floats, turns: Floats) -> Floats:
+    """Value at parts of a round, linear between the entries of a table that repeats."""
+    at = turns % 1.0 * len(table)
+    low = at.astype(np.intp) % len(table)
+    return np.asarray(table[low] + (at - np.floor(at)) * (table[(low + 1) % len(table)] - table[low]))

@@ -48,13 +48,14 @@ class Crosser:
         self.ready_s = over + float(self.rest_s[len(self.starts_s) % len(self.rest_s)])
         return over
 
-    def speed(self) -> SpeedProfile:
-        """Speed over all crossings."""
+    def speed(self, end_s: float) -> SpeedProfile:
+        """Speed over all crossings; who has not crossed by `end_s` does so after it: he is not one who never moves."""
         knots = [(0.0, 0.0)]
         for start in self.starts_s:
             over = start + _WAY_M / self.pace_m_s + _START_S
             knots += [(start, 0.0), (start + _START_S, self.pace_m_s), (over - _START_S, self.pace_m_s), (over, 0.0)]
-        return SpeedProfile([*knots, (knots[-1][0] + 1.0, 0.0)])
+        knots += [(end_s, 0.0), (end_s + 1.0, self.pace_m_s)] if len(knots) == 1 else [(knots[-1][0] + 1.0, 0.0)]
+        return SpeedProfile(knots)
 
     def path(self, plan: TownPlan) -> PointsPath:
         """Across, round, back and round again."""
@@ -75,7 +76,7 @@ def draw_crossers(rng: np.random.Generator, zebras: int, traffic: float) -> list
     """Who wants to cross where, and when; more of them where more moves."""
     crossers = []
     for zebra in range(zebras):
-        wanted = min(MOST_AT_A_ZEBRA, int(rng.poisson(0.8 + 2.6 * traffic)))
+        wanted = min(MOST_AT_A_ZEBRA, int(rng.poisson(1.2 + 2.2 * traffic)))
         places = rng.permutation(MOST_AT_A_ZEBRA)
         first = float(rng.uniform(0.5, 16.0))
         for place in places[:wanted] if traffic > 0.0 else []:

@@ -44,7 +44,7 @@ class Vehicle:
 
 def camera_car(speed_m_s: float, traffic: float) -> Vehicle:
     """The car that the camera is in."""
-    return Vehicle(None, 0, EGO_LENGTH_M, EGO_WIDTH_M, speed_m_s, 1.5, 2.0, 1.2 - 0.4 * traffic, 2.0)
+    return Vehicle(None, 0, EGO_LENGTH_M, EGO_WIDTH_M, speed_m_s, 1.5, 2.0, 1.2 - 0.4 * traffic, 3.0)
 
 
 def draw_vehicle(

@@ -23,6 +23,8 @@ _STRETCH_M = 46.0
 _LEAST_M = 8.0
 _APART_M = 1.6
 _STEP_M = 0.1
+_APART_ENDS_M = 1.2
+_STRAIGHT_ENOUGH = 0.85
 _STANDING_PER_M = 0.012
 _TALKING = 0.4
 
@@ -63,8 +65,16 @@ def _stretches(plan: TownPlan, way: int) -> list[tuple[float, float]]:
         low, high = first + clear, last - clear
         count = max(1, round((high - low) / _STRETCH_M))
         cuts = np.linspace(low, high, count + 1)
-        pieces += [(float(a) + 0.5, float(b) - 0.5) for a, b in pairwise(cuts)]
+        room = [0.5 * _APART_ENDS_M / _width(plan, way, float(cut)) for cut in cuts]
+        ends = zip(pairwise(cuts), pairwise(room), strict=True)
+        pieces += [(float(a) + before, float(b) - after) for (a, b), (before, after) in ends]
     return [piece for piece in pieces if piece[1] - piece[0] > _LEAST_M]
+
+
+def _width(plan: TownPlan, way: int, s_m: float) -> float:
+    """Metres of pavement a metre of s: fewer on the inside of a bend."""
+    turn = float(plan.loop.heading(s_m + 2.0) - plan.loop.heading(s_m - 2.0)) / 4.0
+    return max(0.25, 1.0 - turn * _LANES_M[1] * (1.0 if way else -1.0))
 
 
 def _walkers(
@@ -112,6 +122,8 @@ def _standing(plan: TownPlan, rng: np.random.Generator, where: tuple[int, float,
         if rng.random() > 3.0 * _STANDING_PER_M:
             continue
         s = first + 3.0 * (place + 0.5)
+        if _width(plan, way, s) < _STRAIGHT_ENOUGH:
+            continue
         talking = rng.random() < _TALKING
         spots = [(-0.5, 0.0), (0.5, np.pi)] if talking else [(0.0, float(rng.choice([0.0, 0.5, 1.0])) * np.pi)]
         along = float(plan.loop.heading(s))

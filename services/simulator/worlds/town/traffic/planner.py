@@ -79,7 +79,7 @@ class _Planner:
             if not parked.starts:
                 self._add_vehicle(parked.vehicle, self._bay_path(parked), np.zeros(2), 0.0)
         for crosser in self._crossers:
-            self._add_person(crosser.path(self._plan), crosser.speed(), crosser.look)
+            self._add_person(crosser.path(self._plan), crosser.speed(self._end_s), crosser.look)
         for person in pedestrians(self._plan, options):
             self._add_person(person.path, person.speed, person.look)
         for number, arrival in enumerate(self._arrivals):
@@ -98,9 +98,13 @@ class _Planner:
         for row, one in enumerate(self._placed):
             state.enter(row, 0, one.track, one.x_m, one.speed_m_s)
         count, round_m = len(vehicles), plan.loop.length_m
-        zebras = [Zebra(plan, k, self._crossers, count, options.traffic) for k in range(len(plan.zebras_m))]
+        seed, traffic = options.seed_of_traffic, options.traffic
+        zebras = [
+            Zebra(plan, k, self._crossers, vehicles=count, traffic=traffic, seed=seed)
+            for k in range(len(plan.zebras_m))
+        ]
         junctions = [
-            Junction(plan, self._network, k, vehicles=count, traffic=options.traffic, seed=options.seed_of_traffic)
+            Junction(plan, self._network, k, vehicles=count, traffic=traffic, seed=seed)
             for k in range(len(plan.crossings))
         ]
         for zebra in zebras:

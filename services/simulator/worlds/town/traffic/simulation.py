@@ -20,6 +20,7 @@ STEP_S = 0.1
 _LINE_GAP_M = 0.6
 """Cars stop this far ahead of a stop line."""
 _STANDS_M_S = 0.3
+_CORNER_BRAKE_M_S2 = 2.5
 
 
 class Yielding(Protocol):
@@ -70,10 +71,18 @@ class TrafficSimulation:
             stopping = self._following(gated, gap, np.zeros(len(gated)))
             acceleration[gated] = np.minimum(acceleration[gated], stopping)
         later = np.maximum(speed + acceleration[rows] * STEP_S, 0.0)
+        later = np.minimum(later, self._allowed(rows, speed))
         way = 0.5 * (speed + later) * STEP_S
         state.x_m[rows] += way
         state.gone_m[rows] += way
         state.speed_m_s[rows] = later
+
+    def _allowed(self, rows: Ints, speed: Floats) -> Floats:
+        """Corners are braked for as planned, however eager the driver."""
+        state = self._state
+        track = state.track[rows]
+        ahead = state.tracks.around(track, state.x_m[rows] + speed * STEP_S)
+        return np.asarray(np.maximum(state.tracks.limit_m_s(track, ahead), speed - _CORNER_BRAKE_M_S2 * STEP_S))
 
     def _behind_leaders(self, order: Order) -> Floats:
         """Acceleration in x of every vehicle (N,) behind all that it follows."""

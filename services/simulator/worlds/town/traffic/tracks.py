@@ -65,7 +65,7 @@ class Tracks:
     def stretch(self, track: Ints, around: Floats) -> Floats:
         """Metres of lane a metre of x."""
         low, _ = self._place(track, around)
-        return (self._arc[low + 1] - self._arc[low]) * (self._steps[track] / self.length_m[track])
+        return np.asarray((self._arc[low + 1] - self._arc[low]) * (self._steps[track] / self.length_m[track]))
 
     def limit_m_s(self, track: Ints, around: Floats) -> Floats:
         """Highest speed in x there, corners ahead considered."""

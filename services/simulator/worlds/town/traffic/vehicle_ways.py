@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from services.simulator.actors.motion import Path
 from services.simulator.shapes.vehicle_styles import BICYCLE
@@ -16,9 +17,13 @@ from services.simulator.worlds.town.traffic.parking import PullOut
 from services.simulator.worlds.town.traffic.state import Leg, VehicleState
 from services.simulator.worlds.town.traffic.tracks import LOOP_TRACKS
 
+Floats = NDArray[np.float64]
+
 _CYCLIST_OUT_M = 0.78
 """Cyclists keep this far to the right of the outer lane's middle."""
-_SWAY_M, _SWAY_WAVE_M = 0.08, 90.0
+_WIDE_M, _WIDER_M2, _BEND_M = 0.6, 9.0, 10.0
+"""How far long vehicles keep out of bends at most, by how much for a curvature, felt over so many metres."""
+_SWAY_M, _SWAY_WAVE_M = 0.08, 23.0
 
 
 class WayMaker:
@@ -31,11 +36,12 @@ class WayMaker:
         """Of a vehicle that began on a track."""
         legs = self._state.legs[row]
         if len(legs) == 1 and legs[0].track < LOOP_TRACKS and not self._state.left[row]:
-            sways = vehicle.length_m < LONG_M
-            phase = float(np.random.default_rng([self._seed, 46, row]).uniform(0.0, 2.0 * np.pi))
-            sway = Sway(_SWAY_M, _SWAY_WAVE_M, phase) if sways else None
-            out_m = _CYCLIST_OUT_M if vehicle.style is BICYCLE else 0.0
-            return self._on_loop(legs[0], self._state.shifts[row], out_m, sway)
+            if vehicle.style is BICYCLE:
+                phase = float(np.random.default_rng([self._seed, 46, row]).uniform(0.0, 2.0 * np.pi))
+                return self._on_loop(legs[0], [], _CYCLIST_OUT_M, Sway(_SWAY_M, _SWAY_WAVE_M, phase))
+            if vehicle.length_m > LONG_M and legs[0].track % 2:
+                return self._on_loop(legs[0], [], 0.0, None, self._wide_turns(legs[0].track))
+            return self._on_loop(legs[0], self._state.shifts[row], 0.0, None)
         ends = [*(leg.gone_m for leg in legs[1:]), np.inf]
         paths = [self._leg(leg, end, self._state.shifts[row]) for leg, end in zip(legs, ends, strict=True)]
         return ChainPath(paths, [leg.gone_m for leg in legs], self._end_m(row))
@@ -64,10 +70,20 @@ class WayMaker:
         ]
         return self._on_loop(leg, mine, 0.0, None)
 
-    def _on_loop(self, leg: Leg, shifts: list[Shift], out_m: float, sway: Sway | None) -> LoopPath:
+    def _wide_turns(self, track: int) -> Floats:
+        """Long vehicles on the outer lane keep to the right in tight bends, where their corners swing out."""
+        loop = self._plan.loop
+        s = np.linspace(0.0, loop.length_m, int(loop.length_m), endpoint=False)
+        bend = np.abs(loop.heading(s + _BEND_M) - loop.heading(s - _BEND_M)) / (2.0 * _BEND_M)
+        room: Floats = np.minimum(_WIDE_M, _WIDER_M2 * bend) * (-1.0 if track < 2 else 1.0)
+        return room
+
+    def _on_loop(
+        self, leg: Leg, shifts: list[Shift], out_m: float, sway: Sway | None, leeway: Floats | None = None
+    ) -> LoopPath:
         ahead = 1.0 if leg.track < 2 else -1.0
         n = -ahead * (LANE_CENTRES_M[leg.track % 2] + out_m)
-        return LoopPath(self._plan, ahead, ahead * leg.x_m, n, shifts=tuple(shifts), sway=sway)
+        return LoopPath(self._plan, ahead, ahead * leg.x_m, n, shifts=tuple(shifts), sway=sway, leeway=leeway)
 
     def _end_m(self, row: int) -> float:
         return float(self._state.gone_m[row]) if self._state.left[row] else np.inf
