@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 
-_BAND_PX = 16384
+_BAND_PX = 32768
 """Pixels worked on at a time, so that intermediate results stay in the processor's cache."""
 
 
