@@ -42,8 +42,12 @@ class Moment:
 
     @cached_property
     def footprints(self) -> list[Footprint]:
-        """Of everybody near."""
-        return [Footprint(state.world_from_object, *actor.size_m[:2]) for actor, state in self.near]
+        """Of everybody near; a bicycle hides little of the sky, its rider throws shade enough for both."""
+        return [
+            Footprint(state.world_from_object, *actor.size_m[:2])
+            for actor, state in self.near
+            if actor.category != "bicycle"
+        ]
 
     def corners_at(self, t_s: float) -> Floats:
         """Corners of the moving surfaces' triangles at another time, (T, 3, 3), world frame."""
