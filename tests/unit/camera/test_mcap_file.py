@@ -156,3 +156,16 @@ def test_a_damaged_message_ends_in_one_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"drive\.mcap: cut off or damaged") as caught:
         source.frame(39)
     assert "\n" not in str(caught.value)
+
+
+def test_a_byte_that_changed_on_disk_is_no_other_picture(tmp_path: Path) -> None:
+    path = _write(tmp_path / "drive.mcap", ("/calibration", _calibration()), *(("/camera", _raw(i)) for i in range(3)))
+    data = bytearray(path.read_bytes())
+    # Noise does not compress: the pixels lie in the file as they are.
+    place = data.find(_pixels(2)[..., ::-1].tobytes()[1000:1100])
+    assert place > 0
+    data[place] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="cut off or damaged") as caught:
+        _frame(open_mcap(path, TopicOptions()), 2)
+    assert "\n" not in str(caught.value)
