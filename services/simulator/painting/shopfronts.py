@@ -9,6 +9,8 @@ import numpy as np
 from services.simulator.painting.surfaces import Colour, Image, coloured, noise, plaster, to_image
 from services.simulator.painting.windows import fill, paint_glass, toned
 
+SHOPS, BOARDS, POSTERS, MURALS = 9, 8, 10, 3
+"""How many of each are painted for one town."""
 SHOP_M = (12.0, 3.6)
 """Width and height of what a shop's texture covers."""
 _TRADES = ("BAKERY", "CAFE", "BOOKS", "BIKES", "FLOWERS", "TOOLS", "SHOES", "HAIR", "MARKET", "OPTIK", "BAR", "MUSIC")

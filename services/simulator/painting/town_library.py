@@ -11,13 +11,10 @@ import numpy as np
 
 from services.simulator.painting import shopfronts, storeys, town_surfaces
 from services.simulator.painting.library import paint_shared
+from services.simulator.painting.shopfronts import BOARDS, MURALS, POSTERS, SHOPS
 from services.simulator.painting.surfaces import Image, coloured, leaves, noise, roof_tiles, speckle, to_image
 from services.simulator.painting.traffic_library import paint_traffic
 
-SHOPS = 9
-BOARDS = 8
-POSTERS = 10
-MURALS = 3
 TOWN_SIGNS = 6
 ARROWS = 2
 PAVINGS = ("paving", "setts_grey", "setts_red")

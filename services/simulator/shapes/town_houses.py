@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.shopfronts import SHOP_M
+from services.simulator.painting.shopfronts import BOARDS, SHOP_M
 from services.simulator.painting.storeys import STOREY_M
 from services.simulator.shapes import roofs
 from services.simulator.shapes.meshes import Mesh, Tint, box, merged, quads, stretch
@@ -89,7 +89,7 @@ def shop_mesh(
         pieces.append(roofs.mansard_roof(size_m, top, texture[roof], texture))
     else:
         pieces.append(roofs.gable_roof(size_m, top, 0.7, roof=roof, wall=wall, texture=texture))
-    board = texture[f"board_{int(rng.integers(0, 8))}"]
+    board = texture[f"board_{int(rng.integers(0, BOARDS))}"]
     x, z = float(rng.choice([-0.35, 0.35])) * size_m[0], PLINTH_M + SHOP_M[1] + 0.5
     for side in (-0.04, 0.04):
         # It reads from left to right on both sides.
@@ -114,7 +114,7 @@ def hall_mesh(rng: np.random.Generator, size_m: Size, texture: Textures) -> Mesh
         if rng.random() < 0.65:
             face = [[x + dx, 0.04, z] for dx, z in ((2.0, 4.2), (-2.0, 4.2), (-2.0, 0.0), (2.0, 0.0))]
             pieces.append(quads([face], stretch(), texture["gate"]))
-    board = texture[f"board_{int(rng.integers(0, 8))}"]
+    board = texture[f"board_{int(rng.integers(0, BOARDS))}"]
     x = float(rng.uniform(-0.2, 0.2)) * width
     face = [[x + dx, 0.06, high + z] for dx, z in ((-3.2, -0.1), (3.2, -0.1), (3.2, -1.1), (-3.2, -1.1))]
     pieces.append(quads([[face[1], face[0], face[3], face[2]]], stretch(), board))

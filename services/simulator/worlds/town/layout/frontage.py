@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.town_library import MURALS, SHOPS
+from services.simulator.painting.shopfronts import MURALS, SHOPS
 from services.simulator.shapes import street_things, town_houses, trees
 from services.simulator.shapes.meshes import Mesh, Tint, quads
 from services.simulator.shapes.walls import BAY_M, Wall

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.painting.library import SIGN_COUNT
-from services.simulator.painting.town_library import POSTERS, TOWN_SIGNS
+from services.simulator.painting.shopfronts import POSTERS
+from services.simulator.painting.town_library import TOWN_SIGNS
 from services.simulator.shapes import street_things, trees
 from services.simulator.shapes.greenery import bin_mesh
 from services.simulator.shapes.meshes import Mesh
