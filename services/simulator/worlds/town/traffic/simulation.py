@@ -105,7 +105,7 @@ class TrafficSimulation:
 
     def _by_vehicle(self) -> list[Floats]:
         rows = np.concatenate([rows for rows, _ in self._speeds])
-        speeds = np.concatenate([speeds for _, speeds in self._speeds])
         sort = np.argsort(rows, kind="stable")
+        speeds = np.concatenate([speeds for _, speeds in self._speeds])[sort]
         ends = np.searchsorted(rows[sort], np.arange(len(self._state.x_m) + 1))
-        return [speeds[sort][a:b] for a, b in pairwise(ends)]
+        return [speeds[a:b] for a, b in pairwise(ends)]
