@@ -19,6 +19,7 @@ from services.simulator.worlds.town.layout.site import Site
 from services.simulator.worlds.town.layout.town import town_mesh
 from services.simulator.worlds.town.profile import WALKWAY_M
 from services.simulator.worlds.town.survey import TownSurvey, survey_town
+from services.simulator.worlds.town.traffic.planner import plan_traffic
 
 TEXTURE: dict[str, int] = defaultdict(int)
 HEIGHTS_M = (0.45, 1.0, 1.8)
@@ -135,3 +136,20 @@ def test_texture_feeds_orb_as_real_images_do() -> None:
     for index in (0, 220, 450):
         image = cv2.cvtColor(town.render(index).image, cv2.COLOR_BGR2GRAY)
         assert len(orb.detect(image, None)) >= 1500
+
+
+def test_nobody_runs_into_what_stands() -> None:
+    town, mesh = built(7)
+    standing = obstacles(town, mesh)
+    tree = cKDTree(standing)
+    actors, _ = plan_traffic(DriveOptions(world="town", seed=7, frames=300, traffic=1.0), town.plan, TEXTURE)
+    assert len(actors) > 100
+    for actor in actors:
+        half = 0.5 * np.array(actor.size_m[:2])
+        for t_s in np.arange(0.0, 30.0, 2.5):
+            state = actor.at(float(t_s))
+            if not state.present:
+                continue
+            near = standing[tree.query_ball_point(state.centre_m[:2], float(np.hypot(*half)))]
+            inside = np.abs((near - state.world_from_object[:2, 3]) @ state.world_from_object[:2, :2]) < half
+            assert not inside.all(axis=1).any()
