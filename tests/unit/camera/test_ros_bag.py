@@ -126,6 +126,14 @@ def test_rectified_images_have_the_projections_camera(ros: Ros, tmp_path: Path) 
     assert any("taken as rectified by its name" in note for note in source.notes)
 
 
+def test_a_direct_camera_is_no_rectified_one(tmp_path: Path) -> None:
+    ros = Ros("sqlite")
+    image = ros.image("/direct/image_raw", START_NS, _pixels(0), "bgr8")
+    source = open_ros_bag(ros.write(tmp_path, [ros.info("/direct/camera_info", START_NS, SIZE), image]), TopicOptions())
+    assert _frame(source, 0).calibration.intrinsics[0, 0] == 20
+    assert source.notes == ()
+
+
 def test_a_pose_without_a_frame_is_taken_as_the_cameras(ros: Ros, tmp_path: Path) -> None:
     messages = [*_drive(ros), ros.pose("/vicon", START_NS, (1, 2, 3, 0, 0, 0, 1))]
     source = open_ros_bag(ros.write(tmp_path, messages), TopicOptions("/cam/image_raw", truth="/vicon"))
@@ -182,6 +190,9 @@ def test_calibrations_that_do_not_fit(tmp_path: Path) -> None:
         "size", ros.info("/cam/camera_info", START_NS, (64, 48))
     )
     assert "focal lengths 0 and 0 px" in said_of("focal", ros.info("/cam/camera_info", START_NS, SIZE, focal=0.0))
+    assert "/cam/camera_info: last row of K [0.0, 0.0, 2.0], expected 0 0 1" in said_of(
+        "scaled", ros.info("/cam/camera_info", START_NS, SIZE, focal=2.0)
+    )
     assert "/cam/camera_info: distortion (nan, 0.0, 0.0, 0.0, 0.0), expected finite numbers" in said_of(
         "nan", ros.info("/cam/camera_info", START_NS, SIZE, d=(float("nan"), 0.0, 0.0, 0.0, 0.0))
     )

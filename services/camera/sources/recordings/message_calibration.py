@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording's calibration message as a camera's calibration."""
 
+import re
+
 import numpy as np
 
 from schemas.records import CameraCalibration
@@ -11,6 +13,8 @@ from services.runtime.errors import InputError
 # plumb_bob's five are the first five of the rational model's eight.
 _MODELS = ("plumb_bob", "rational_polynomial", "")
 _COEFFICIENTS = 5
+# image_rect, image_rect_color, rectified; not direct.
+_RECTIFIED = re.compile(r"(?:^|_)rect")
 
 
 def calibration_of(
@@ -21,13 +25,13 @@ def calibration_of(
     Images whose topic is called rectified are a camera without distortion, as ROS's image_proc makes them.
 
     Raises:
-        InputError: another size, no focal length, or a distortion that is not plumb_bob.
+        InputError: another size, no focal length, no pinhole camera's matrix, or a distortion that is not plumb_bob.
     """
     where = f"{recording} {topics.info}"
     if (info.width, info.height) != size:
         raise InputError(f"{where}: {info.width}x{info.height} px, expected {size[0]}x{size[1]} as the images")
     distortion: tuple[float, ...] = ()
-    if any("rect" in part for part in topics.image.split("/")[-2:]):
+    if any(_RECTIFIED.search(part) for part in topics.image.split("/")[-2:]):
         notes.append(f"{topics.image} is taken as rectified by its name: the calibration's projection is used")
         intrinsics = info.projection[:, :3]
     else:
@@ -35,6 +39,8 @@ def calibration_of(
     if not (np.isfinite(intrinsics).all() and intrinsics[0, 0] > 0 and intrinsics[1, 1] > 0):
         focal = f"{intrinsics[0, 0]:g} and {intrinsics[1, 1]:g}"
         raise InputError(f"{where}: focal lengths {focal} px, expected a calibrated camera's, or camera.calibration")
+    if intrinsics[2].tolist() != [0.0, 0.0, 1.0]:
+        raise InputError(f"{where}: last row of K {intrinsics[2].tolist()}, expected 0 0 1, or camera.calibration")
     return CameraCalibration(0, *size, np.ascontiguousarray(intrinsics), distortion)
 
 
