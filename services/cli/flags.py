@@ -23,10 +23,14 @@ OutFlag = Annotated[
 InputArgument = Annotated[
     str | None,
     typer.Argument(
-        metavar="[INPUT]",
-        help="Folder: KITTI (odometry, raw drive, tracking sequence), TUM RGB-D, EuRoC, images with calibration.toml. "
-        "File: video, ROS 1 bag (.bag), ROS 2 bag (folder, .db3), MCAP (recorded session, ROS 2 or Foxglove images). "
-        "Live: 0, /dev/video0, rtsp://..., http://... Or 'simulator' (the default).",
+        metavar="INPUT",
+        # A blank line begins a new line of the help.
+        help="folder: KITTI (odometry, raw drive, tracking sequence), TUM RGB-D, EuRoC, or images with a "
+        "calibration.toml\n\n"
+        "file: a video, a ROS 1 bag (.bag), a ROS 2 bag (its folder, or .db3), MCAP (a session of kinemap's, images of "
+        "ROS 2 or Foxglove)\n\n"
+        "live camera: 0, /dev/video0, rtsp://..., http://...\n\n"
+        "'simulator': the default",
     ),
 ]
 StageFlag = Annotated[
