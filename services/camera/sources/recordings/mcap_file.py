@@ -4,7 +4,6 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.records import Header
 from mcap.summary import Summary
@@ -62,11 +61,11 @@ def _read_head(path: Path) -> _Head | None:
         try:
             reader = make_reader(stream)
             header: Header = reader.get_header()
-        except (McapError, ValueError, EOFError):
+        except Exception:  # mcap meets damage with whatever it stumbles over
             return None
         try:
             return _Head(header.library, reader.get_summary())
-        except (McapError, ValueError, EOFError):
+        except Exception:
             return _Head(header.library, None)
 
 
