@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,8 @@ from services.formats.ply import parse_ply
 from services.runtime.errors import InputError
 
 LABEL_FIELDS = ("state", "label")
+_FARTHEST_M = 1e9
+_MOST_VOXELS = 2**62
 _PARSERS = {".pcd": parse_pcd, ".ply": parse_ply}
 
 
@@ -20,7 +23,7 @@ _PARSERS = {".pcd": parse_pcd, ".ply": parse_ply}
 class LabelledPoints:
     """`position` (N, 3) float64; `state` (N,) uint8 of MotionState. `name` says in errors which points are meant.
 
-    Raises InputError for positions that are not finite, or not as many as the states.
+    Raises InputError for positions that are not finite or beyond 10^9 m, or not as many as the states.
     """
 
     position: npt.NDArray[np.float64]
@@ -34,6 +37,13 @@ class LabelledPoints:
         broken = ~np.isfinite(self.position).all(axis=1)
         if broken.any():
             raise InputError(f"{self.name}: point {int(np.argmax(broken)) + 1} of {count} is not finite")
+        far = (np.abs(self.position) > _FARTHEST_M).any(axis=1)
+        if far.any():
+            row = int(np.argmax(far))
+            largest = float(np.abs(self.position[row]).max())
+            raise InputError(
+                f"{self.name}: point {row + 1} of {count} is at {largest:.3g} m, expected at most {_FARTHEST_M:g}"
+            )
 
     def __len__(self) -> int:
         return len(self.state)
@@ -67,3 +77,27 @@ def read_points(path: Path) -> LabelledPoints:
         raise InputError(f"{path}: {label} {table[label][row]} of point {row + 1}, expected a MotionState, 0 to 4")
     position = np.stack([table[name].astype(np.float64) for name in "xyz"], axis=1)
     return LabelledPoints(position, table[label].astype(np.uint8), str(path))
+
+
+def first_in_voxels(
+    position: npt.NDArray[np.floating[Any]], state: npt.NDArray[np.uint8], voxel_m: float
+) -> npt.NDArray[np.intp]:
+    """The rows (M,), increasing, of the first point of every state in every cube of `voxel_m`.
+
+    `position` is (N, 3) in metres, `state` (N,) of MotionState. Raises InputError for cubes so small that 62 bits
+    cannot number them.
+    """
+    if len(state) == 0:
+        return np.empty(0, dtype=np.intp)
+    cells = np.floor(position / voxel_m)
+    cells -= cells.min(axis=0)
+    size = cells.max(axis=0) + 1
+    with np.errstate(over="ignore"):  # infinitely many are too many
+        voxels = float(np.prod(size.astype(np.float64)))
+    if not voxels * len(MotionState) <= _MOST_VOXELS:
+        extent = " x ".join(f"{side * voxel_m:.3g}" for side in size.tolist())
+        raise InputError(f"voxel {voxel_m:g} m, expected a larger one for points over {extent} m")
+    voxel, sides = cells.astype(np.int64), size.astype(np.int64)
+    key = ((voxel[:, 0] * sides[1] + voxel[:, 1]) * sides[2] + voxel[:, 2]) * len(MotionState) + state
+    first: npt.NDArray[np.intp] = np.sort(np.unique(key, return_index=True)[1])
+    return first

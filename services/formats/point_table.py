@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -41,13 +42,32 @@ def table_of(
     lines = data.decode("ascii", errors="replace").splitlines()[:count]
     if len(lines) < count:
         raise InputError(f"{path}: cut off, {len(lines)} rows, expected {count} points")
-    return np.array([_row(path, number, line.split(), dtype) for number, line in enumerate(lines, start=1)], dtype)
+    names = dtype.names or ()
+    numbers = [_row(path, number, line.split(), len(names)) for number, line in enumerate(lines, start=1)]
+    columns = np.array(numbers, dtype=np.float64).reshape(-1, len(names))
+    table = np.empty(count, dtype)
+    for column, name in enumerate(names):
+        table[name] = _column(path, name, columns[:, column], dtype[name])
+    return table
 
 
-def _row(path: Path, number: int, fields: Sequence[str], dtype: np.dtype[np.void]) -> tuple[float, ...]:
-    if len(fields) != len(dtype.names or ()):
-        raise InputError(f"{path}: point {number} has {len(fields)} numbers, expected {len(dtype.names or ())}")
+def _row(path: Path, number: int, fields: Sequence[str], count: int) -> list[float]:
+    if len(fields) != count:
+        raise InputError(f"{path}: point {number} has {len(fields)} numbers, expected {count}")
     try:
-        return tuple(float(field) for field in fields)
+        return [float(field) for field in fields]
     except ValueError as error:
         raise InputError(f"{path}: point {number}: {error}") from None
+
+
+def _column(path: Path, name: str, values: npt.NDArray[np.float64], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    if dtype.kind == "f":
+        with np.errstate(over="ignore"):  # becomes infinite, which whoever needs this column refuses
+            return values.astype(dtype)
+    limits = np.iinfo(dtype)
+    fits = (values == np.rint(values)) & (values >= limits.min) & (values <= limits.max)
+    if not fits.all():
+        row = int(np.argmin(fits))
+        expected = f"a whole number in {limits.min}..{limits.max}"
+        raise InputError(f"{path}: {name} {values[row]:g} of point {row + 1}, expected {expected}")
+    return values.astype(dtype)

@@ -16,7 +16,8 @@ from services.evaluation.bench.runs import BenchRun, measures_of
 from services.runtime.errors import InputError, KinemapError
 
 _CODE = ("*.py", "*.so", "*.sql")
-_CODE_OF_NO_RUN = ("cli/", "evaluation/bench_")
+_CODE_OF_NO_RUN = ("cli/", "evaluation/bench/")
+_ENDING = {"fingerprint", "configuration", "failure", "wall_s", "alone", "code"}
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ class KeptRuns:
             ending = json.loads(self._file(run).read_text(encoding="utf-8"))
         except (FileNotFoundError, ValueError):
             return None  # whoever was killed while writing it has not finished the run either
-        return dict(ending)
+        return ending if isinstance(ending, dict) and ending.keys() >= _ENDING else None
 
 
 def _differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:

@@ -97,7 +97,8 @@ def _alignment(
 def _recorded_surface(run: Path, options: "SurfaceOptions", recover: bool) -> LabelledPoints:
     from services.evaluation.map.session_surface import session_surface
 
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("true surface", total=None)
         return session_surface(
             session_of(run),

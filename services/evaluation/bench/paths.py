@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from services.evaluation.bench.runs import BenchRun, RunStatus
-from services.evaluation.run.folder import TRAJECTORY_NAME
+from services.evaluation.run.folder import TRAJECTORY_NAME, TRUTH_NAME
 from services.evaluation.trajectory.alignment import Alignment
 from services.evaluation.trajectory.error import TrajectoryError, trajectory_error
 from services.evaluation.trajectory.files import read_trajectory
 from services.formats.trajectory import Trajectory
 from services.runtime.errors import InputError
-
-TRUTH_NAME = "ground_truth.tum"
 
 
 @dataclass(frozen=True)
@@ -32,9 +30,9 @@ def read_paths(runs: Iterable[BenchRun], folder: Path) -> dict[str, RunPath]:
         files = [folder / run.folder / name for name in (TRAJECTORY_NAME, TRUTH_NAME)]
         if run.status is not RunStatus.TRACKED or not all(file.is_file() for file in files):
             continue
-        estimate, truth = (read_trajectory(file) for file in files)
         try:
+            estimate, truth = (read_trajectory(file) for file in files)
             paths[run.folder] = RunPath(estimate, truth, trajectory_error(estimate, truth, Alignment.SIM3))
         except InputError:
-            continue  # the report says why; a path without an error has no place in a picture of errors
+            continue  # a path that cannot be read or has no error has no place in a picture of errors
     return paths

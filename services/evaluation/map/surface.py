@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from schemas.records import CameraCalibration, DepthImage, MotionState, TrueInstances, TruePose
-from services.formats.point_cloud import LabelledPoints
+from services.formats.point_cloud import LabelledPoints, first_in_voxels
 from services.runtime.errors import InputError
 
 
@@ -68,15 +68,8 @@ class BackProjection:
 
 
 def thinned(clouds: Sequence[LabelledPoints], voxel_m: float) -> LabelledPoints:
-    """The first point of every state in every voxel, in the order of the clouds."""
+    """The first point of every state in every voxel, in the order of the clouds. Raises InputError for tiny voxels."""
     position = np.concatenate([np.empty((0, 3)), *(cloud.position for cloud in clouds)])
     state = np.concatenate([np.empty(0, dtype=np.uint8), *(cloud.state for cloud in clouds)])
-    if len(state) == 0:
-        return LabelledPoints(position, state, "surface")
-    voxel = np.floor(position / voxel_m).astype(np.int64)
-    voxel -= voxel.min(axis=0)
-    size = voxel.max(axis=0) + 1
-    key = ((voxel[:, 0] * size[1] + voxel[:, 1]) * size[2] + voxel[:, 2]) * len(MotionState) + state
-    _, first = np.unique(key, return_index=True)
-    first.sort()
+    first = first_in_voxels(position, state, voxel_m)
     return LabelledPoints(position[first], state[first], "surface")

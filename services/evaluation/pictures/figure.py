@@ -28,8 +28,8 @@ def new_figure(height_in: float = 7.0, width_in: float = WIDTH_IN) -> Figure:
 
 
 def shown_name(name: str) -> str:
-    """A name of the user's as a picture can show it: text, cut where it is long, and never taken for a hidden one (_)."""
-    name = name.encode("utf-8", "replace").decode("utf-8")
+    """A name of the user's as a legend can show it: text, not too long, and not taken for a hidden one (empty, _)."""
+    name = name.encode("utf-8", "replace").decode("utf-8") or "(no name)"
     kept = name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME // 2]}...{name[-_LONGEST_NAME // 2 :]}"
     return f" {kept}" if kept.startswith("_") else kept
 

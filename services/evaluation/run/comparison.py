@@ -26,26 +26,26 @@ def compare(reports: Sequence[Report]) -> list[ComparisonRow]:
 def _measures(report: Report) -> dict[str, str]:
     frames = report["frames"]
     measures = {
-        "input": str(report["input"]),
-        "stage": str(report["stage"]),
-        "whole input": "yes" if report["complete"] else "no",
+        "input": str(report.get("input", NOTHING)),
+        "stage": str(report.get("stage", NOTHING)),
+        "whole input": "no" if report["failure"] else "yes",
         "frames tracked": f"{frames['tracked']} of {frames['in']}",
     }
-    if frames["initialized_at"] is not None:
+    if frames.get("initialized_at") is not None and frames.get("tracked_after_initialization") is not None:
         measures["initialized at frame"] = str(frames["initialized_at"])
         measures["tracked since then"] = f"{frames['tracked_after_initialization']:.1%}"
     for name, error in (report["ate"] or {}).items():
         if "ate_m" in error:
             measures[f"ATE {name} RMSE [m]"] = f"{error['ate_m']['rmse']:.3f}"
             measures[f"ATE {name} coverage"] = f"{error['coverage']:.1%}"
-    measures["keyframes"] = str(report["keyframes"])
+    measures["keyframes"] = str(report.get("keyframes", NOTHING))
     measures |= {f"landmarks {label}": str(count) for label, count in report["landmarks"].items() if count}
     measures |= {f"density {level} [frames]": str(count) for level, count in report["density_frames"].items()}
     flag = report["moving_flag"]
     if flag is not None:
         for name in ("precision", "recall", "f1"):
             measures[f"moving flag {name}"] = NOTHING if flag[name] is None else f"{flag[name]:.3f}"
-    for stage, times in report["stage_ms"].items():
+    for stage, times in report.get("stage_ms", {}).items():
         measures[f"{stage} p50/p95 [ms]"] = f"{times['p50']:.1f}/{times['p95']:.1f}"
     if report["frames_per_s"]:
         measures["frames/s"] = f"{report['frames_per_s']:.1f}"

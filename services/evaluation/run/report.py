@@ -66,7 +66,7 @@ def write_report(report: Report, path: Path) -> None:
 
 
 def read_report(path: Path) -> Report:
-    """Read a report back. Raises InputError for one that is missing, no JSON, or of another version."""
+    """Read a report back. Raises InputError for one that is missing, no JSON, of another version, or not whole."""
     try:
         report = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -76,6 +76,8 @@ def read_report(path: Path) -> Report:
     version = report.get("version") if isinstance(report, dict) else None
     if version != REPORT_VERSION:
         raise InputError(f"{path}: report of version {version}, expected {REPORT_VERSION}")
+    if not _is_whole(report):
+        raise InputError(f"{path}: not a whole report, expected one as `kinemap run` writes it")
     return dict(report)
 
 
@@ -98,6 +100,33 @@ def stage_times(log: SessionLog, services: Mapping[str, ServiceUsage]) -> dict[s
                     "p95": usage.metrics[f"{stage}_ms_p95"],
                 }
     return dict(sorted(times.items()))
+
+
+def _is_whole(report: Report) -> bool:
+    """Whether all is there, and of its kind, that tables of runs are made of."""
+    match report:
+        case {
+            "failure": str(),
+            "frames": {"in": int(), "expected": int(), "tracked": int()},
+            "ate": None | dict() as ate,
+            "landmarks": dict() as landmarks,
+            "density_frames": dict() as density_frames,
+            "moving_flag": None | {"precision": _, "recall": _, "f1": _},
+            "services": dict() as services,
+            "frames_per_s": None | int() | float(),
+        }:
+            counts = [*landmarks.values(), *density_frames.values()]
+            times_s = report.get("wall_s"), report.get("driven_s")
+            stage_ms = report.get("stage_ms", {})
+            return (
+                all(isinstance(count, int) for count in counts)
+                and all(time_s is None or isinstance(time_s, int | float) for time_s in times_s)
+                and isinstance(stage_ms, dict)
+                and all(isinstance(error, dict) for error in (ate or {}).values())
+                and all(isinstance(times, dict) and {"p50", "p95"} <= times.keys() for times in stage_ms.values())
+                and all(isinstance(usage, dict) and "peak_memory_bytes" in usage for usage in services.values())
+            )
+    return False
 
 
 def _frames(log: SessionLog, trajectory: Trajectory | None) -> Report:

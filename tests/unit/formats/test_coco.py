@@ -136,3 +136,31 @@ def test_wrong_results_are_named(dataset: CocoDataset, tmp_path: Path, row: obje
     (tmp_path / "r.json").write_text(json.dumps([row]))
     with pytest.raises(InputError, match=said):
         read_coco_results(tmp_path / "r.json", dataset)
+
+
+@pytest.mark.parametrize(
+    ("place", "change", "expected"),
+    [
+        ("annotations", {"area": float("nan")}, "area NaN, expected square pixels"),
+        ("annotations", {"area": 10**400}, "expected square pixels"),
+        ("annotations", {"bbox": [float("nan")] * 4}, "expected x, y, width, height"),
+        ("annotations", {"bbox": [10**400, 1, 1, 1]}, "expected x, y, width, height"),
+        ("annotations", {"iscrowd": "no"}, 'iscrowd "no", expected 0 or 1'),
+        ("annotations", {"attributes": [1]}, "attributes .1., expected an object"),
+        ("annotations", {"segmentation": [[-1e9, -1e9, 1e9, -1e9, 1e9, 1e9]]}, "polygons of 3 points and more"),
+        ("categories", {"id": 4, "name": "car"}, "stands twice under categories"),
+        ("categories", {"id": 3, "name": "bus"}, "stands twice under categories"),
+    ],
+)
+def test_what_would_be_counted_wrong_is_refused(
+    tmp_path: Path, place: str, change: dict[str, object], expected: str
+) -> None:
+    annotation = {"id": 1, "image_id": 1, "category_id": 3, "segmentation": [[1, 1, 9, 1, 9, 9]]}
+    content = {
+        "images": [{"id": 1, "file_name": "a.png", "width": 20, "height": 10}],
+        "categories": [{"id": 3, "name": "car"}] + ([change] if place == "categories" else []),
+        "annotations": [annotation | (change if place == "annotations" else {})],
+    }
+    (tmp_path / "truth.json").write_text(json.dumps(content))
+    with pytest.raises(InputError, match=expected):
+        read_coco(tmp_path / "truth.json")

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from services.formats.point_cloud import LabelledPoints, read_points
+from services.formats.point_cloud import LabelledPoints, first_in_voxels, read_points
 from services.runtime.errors import InputError
 
 PCD = (
@@ -85,3 +85,30 @@ def test_a_missing_file_and_unequal_arrays_are_refused(tmp_path: Path) -> None:
         read_points(tmp_path / "none.ply")
     with pytest.raises(InputError, match=r"positions of shape \(3, 3\), expected \(2, 3\)"):
         LabelledPoints(np.zeros((3, 3)), np.zeros(2, np.uint8))
+
+
+@pytest.mark.parametrize(
+    ("point", "expected"),
+    [
+        ("0 0 0 256", "state 256 of point 1, expected a whole number in 0..255"),
+        ("0 0 0 -1", "state -1 of point 1"),
+        ("0 0 0 nan", "state nan of point 1"),
+        ("0 0 0 1.5", "state 1.5 of point 1"),
+        ("1e300 0 0 0", "point 1 of 1 is not finite"),
+        ("1e30 0 0 0", "is at 1e.30 m, expected at most 1e.09"),
+    ],
+)
+def test_numbers_that_their_type_cannot_hold(tmp_path: Path, point: str, expected: str) -> None:
+    header = "VERSION 0.7\nFIELDS x y z state\nSIZE 4 4 4 1\nTYPE F F F U\nPOINTS 1\nDATA ascii\n"
+    (tmp_path / "map.pcd").write_text(f"{header}{point}\n")
+    with pytest.raises(InputError, match=expected):
+        read_points(tmp_path / "map.pcd")
+
+
+def test_the_first_point_of_every_state_in_every_cube() -> None:
+    position = np.array([[0.0, 0, 0], [0.4, 0, 0], [0.6, 0, 0], [0.4, 0, 0], [-0.1, 0, 0]])
+    state = np.array([0, 0, 0, 1, 0], dtype=np.uint8)
+    assert first_in_voxels(position, state, 0.5).tolist() == [0, 2, 3, 4]
+    assert first_in_voxels(position[:0], state[:0], 0.5).tolist() == []
+    with pytest.raises(InputError, match="voxel 1e-09 m, expected a larger one"):
+        first_in_voxels(np.eye(3), np.zeros(3, dtype=np.uint8), 1e-9)
