@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions
+from services.simulator.worlds.build import build_world
+from services.simulator.worlds.world import World
 from tests.benchmark.simulator.orb_features import WORLDS, orb_behaviour
 from tests.benchmark.simulator.warp_errors import grey, pixel_grid, place_elsewhere, stereo_error, warp_errors
 
@@ -18,6 +20,23 @@ STRONG_GRADIENT = 10.0
 
 def gradient(image: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.hypot(cv2.Sobel(image, cv2.CV_32F, 1, 0), cv2.Sobel(image, cv2.CV_32F, 0, 1)) / 8.0
+
+
+SLOPES = {"world": "town", "traffic": 0.6, "max_slope": 0.1}
+BUILT: dict[tuple[object, ...], World] = {}
+
+
+@pytest.fixture(autouse=True)
+def town_built_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lens, light and size of the image change nothing of what stands and moves."""
+
+    def build(options: DriveOptions) -> World:
+        key = (options.world, options.seed, options.traffic, options.max_slope, options.oncoming_cars)
+        if key not in BUILT:
+            BUILT[key] = build_world(options)
+        return BUILT[key]
+
+    monkeypatch.setattr("services.simulator.drive.build_world", build)
 
 
 BARREL = {"lens": "radial", "distortion": (-0.25, 0.06, 0.001, -0.001, 0.0)}
@@ -42,8 +61,8 @@ def test_flow_and_depth_with_pose_say_the_same_of_what_stands(street: Drive, ind
         (1, {}),
         (2, {"stereo_baseline_m": 0.5}),
         (3, BARREL),
-        (1, {"world": "town"}),
-        (2, {"world": "town", "light": "low_sun", "shadows": True}),
+        (1, {"world": "town", "traffic": 0.0}),
+        (6, {**SLOPES, "light": "low_sun", "shadows": True}),
         (3, {"world": "town", "stereo_baseline_m": 0.5, **FISHEYE}),
     ],
     ids=str,
@@ -115,15 +134,15 @@ def test_road_lies_at_the_cameras_height(street: Drive) -> None:
 
 @pytest.mark.parametrize("world", WORLDS)
 def test_orb_finds_and_matches_features_as_on_real_images(world: str) -> None:
-    drive = Drive(DriveOptions(width=1242, height=375, seed=5, **WORLDS[world]))
+    drive = Drive(DriveOptions(width=1242, height=375, seed=1, **WORLDS[world]))
     found = [orb_behaviour(drive, index) for index in (30, 160)]
     assert min(behaviour.features for behaviour in found) >= 1500
     assert min(behaviour.right for behaviour in found) >= 0.6
 
 
-@pytest.mark.parametrize("options", [{}, {"world": "town", "traffic": 0.6, "max_slope": 0.1}], ids=str)
+@pytest.mark.parametrize("options", [{}, SLOPES], ids=str)
 def test_surfaces_of_objects_lie_in_their_cuboids(options: dict[str, Any]) -> None:
-    drive = Drive(DriveOptions(seed=2, **options))
+    drive = Drive(DriveOptions(seed=6, **options))
     pitches = []
     for index in (60, 150, 240):
         frame = drive.render(index)
