@@ -174,10 +174,8 @@ def test_a_byte_that_changed_on_disk_is_no_other_picture(tmp_path: Path) -> None
 def test_a_damaged_end_is_one_line(tmp_path: Path) -> None:
     whole = _write(tmp_path / "whole.mcap", ("/calibration", _calibration()), ("/camera", _raw(0))).read_bytes()
     path = tmp_path / "drive.mcap"
-    for place in range(len(whole) - 37, len(whole)):  # the footer and the magic behind it
-        path.write_bytes(whole[:place] + bytes([whole[place] ^ 0xFF]) + whole[place + 1 :])
-        try:
-            _frame(open_mcap(path, TopicOptions()), 0)
-        except InputError as error:
-            assert "drive.mcap" in str(error)
-            assert "\n" not in str(error)
+    # Where the footer was, a record of a kind nobody knows that reaches into the magic behind it.
+    path.write_bytes(whole[:-37] + b"\x7f" + (24).to_bytes(8, "little") + whole[-28:])
+    with pytest.raises(InputError, match=r"drive\.mcap: cut off or without an index") as caught:
+        open_mcap(path, TopicOptions())
+    assert "\n" not in str(caught.value)
