@@ -19,6 +19,7 @@ from services.camera.prefetch import Prefetch
 from services.camera.sources.live.live_address import is_live, without_credentials
 from services.camera.sources.source import Source
 from services.cli.flags import ConfigFlag, InputArgument, Overrides, SetFlag, resolve_config
+from services.cli.pipeline_run import InterruptedRunError
 from services.recorder.recorded_key import key_of
 from services.recorder.session_writer import SessionWriter, WriterOptions
 from services.runtime.bus import Subscription
@@ -77,7 +78,7 @@ def record(
             Console(markup=False).print(f"recording {what} until Ctrl-C", highlight=False, soft_wrap=True)
         count = _write(file, resolved, messages_of_input(resolved, stop))
         if not count:
-            raise InputError(f"--file {file}: stopped before the first frame, nothing was recorded")
+            raise InterruptedRunError("stopped by the user before the first frame: nothing was recorded")
     Console(markup=False).print(f"{file}: {count} messages", highlight=False, soft_wrap=True)
 
 

@@ -14,6 +14,7 @@ from schemas.codec import decode
 from schemas.records import CameraCalibration, Image
 from services.camera import configured_source
 from services.camera.sources.source import SourceFrame
+from services.cli.pipeline_run import InterruptedRunError
 from services.cli.record import messages_of_input, record
 from services.runtime.config import load_config
 from services.runtime.errors import InputError
@@ -89,3 +90,16 @@ def test_what_came_before_a_broken_image_is_recorded_whole(
     assert [entry.fields["note"] for entry in caplog.records if entry.message == "assumed"] == [  # type: ignore[attr-defined]
         "no times.txt in drive: times are assumed at 10 Hz"
     ]
+
+
+def test_a_camera_left_before_its_first_frame_records_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    camera = FallsSilent()
+    monkeypatch.setattr(configured_source, "open_configured_source", lambda _: camera)
+    _keep_process(monkeypatch)
+    # Ctrl-C comes while the camera is being opened.
+    monkeypatch.setattr(signal, "signal", lambda _, handler: handler())
+    with pytest.raises(InterruptedRunError, match="nothing was recorded") as ended:
+        record("0", tmp_path / "a.mcap")
+    assert ended.value.exit_code == 130
+    assert camera.closed.is_set()
+    assert not (tmp_path / "a.mcap").exists()
