@@ -95,16 +95,24 @@ class DepthScale:
         if self._found is not None:
             return
         seen = (in_units.landmark_last_seen_ns == depth.timestamp_ns) & np.isin(in_units.landmark_state, _STANDING)
-        camera_from_map = np.linalg.inv(matrix_from_pose(map_from_camera))
-        for row in np.flatnonzero(seen).tolist():
-            map_from_anchor = matrix_from_pose(self._pose_of(int(in_units.landmark_anchor_id[row])))
-            in_anchor = np.append(in_units.landmark_position[row].astype(np.float64), 1.0)
-            in_camera = (camera_from_map @ map_from_anchor @ in_anchor)[:3]
-            measured_m = self._depth_at(in_camera, depth.depth_m)
-            if measured_m > 0 and in_camera[2] > 0:
-                self._ratios[int(in_units.landmark_id[row])] = measured_m / float(in_camera[2])
+        if not seen.any():
+            return
+        in_camera = self._in_camera(in_units, np.flatnonzero(seen), map_from_camera)
+        measured_m = self._depths_at(in_camera, depth.depth_m)
+        known = measured_m > 0
+        ratios = measured_m[known] / in_camera[known, 2]
+        self._ratios.update(zip(in_units.landmark_id[seen][known].tolist(), ratios.tolist(), strict=True))
         if len(self._ratios) >= _LEAST_LANDMARKS:
             self._found = float(np.median(list(self._ratios.values())))
+
+    def _in_camera(self, in_units: MapUpdate, rows: npt.NDArray[np.intp], map_from_camera: Array) -> Array:
+        """(N, 3) of the update's landmarks, in map units."""
+        camera_from_map = np.linalg.inv(matrix_from_pose(map_from_camera))
+        anchors, anchor_of = np.unique(in_units.landmark_anchor_id[rows], return_inverse=True)
+        camera_from_anchor = np.array([camera_from_map @ matrix_from_pose(self._pose_of(int(one))) for one in anchors])
+        own = camera_from_anchor[anchor_of]
+        position = in_units.landmark_position[rows].astype(np.float64)
+        return np.asarray(np.einsum("nij,nj->ni", own[:, :3, :3], position) + own[:, :3, 3])
 
     def _pose_of(self, keyframe_id: int) -> Array:
         return np.asarray(self._keyframes[keyframe_id][_KEYFRAME_COLUMNS.index("pose")], dtype=np.float64)
@@ -112,14 +120,14 @@ class DepthScale:
     def _in_metres(self, position: Array, scale: float) -> Array:
         return self._origin + scale * (position - self._origin)
 
-    def _depth_at(self, in_camera: Array, depth_m: npt.NDArray[np.float32]) -> float:
-        """Metres where the point falls into the image as it came, distorted; 0 where there is no depth."""
-        zero = np.zeros(3)
-        distortion = np.array(self._calibration.distortion)
-        (((x, y),),), _ = cv2.projectPoints(
-            in_camera.reshape(1, 1, 3), zero, zero, self._calibration.intrinsics, distortion
-        )
-        column, row = round(float(x)), round(float(y))
+    def _depths_at(self, in_camera: Array, depth_m: npt.NDArray[np.float32]) -> Array:
+        """(N,) metres where the points fall into the image as it came, distorted; 0 where there is no depth."""
+        none, distortion = np.zeros(3), np.array(self._calibration.distortion)
+        pixels, _ = cv2.projectPoints(in_camera.reshape(-1, 1, 3), none, none, self._calibration.intrinsics, distortion)
+        # A point at the camera's own place has no pixel.
+        column, row = np.rint(np.nan_to_num(pixels.reshape(-1, 2), nan=-1.0, posinf=-1.0, neginf=-1.0)).T
         height, width = depth_m.shape
-        measured_m = float(depth_m[row, column]) if 0 <= column < width and 0 <= row < height else 0.0
-        return measured_m if np.isfinite(measured_m) else 0.0
+        inside = (column >= 0) & (row >= 0) & (column < width) & (row < height) & (in_camera[:, 2] > 0)
+        measured_m = np.zeros(len(in_camera))
+        measured_m[inside] = depth_m[row[inside].astype(np.intp), column[inside].astype(np.intp)]
+        return np.where(np.isfinite(measured_m), measured_m, 0.0)
