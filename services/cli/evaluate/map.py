@@ -36,7 +36,12 @@ def evaluate_map(
         Path | None, typer.Option(help="True camera path in the surface's frame; a run's folder holds its own.")
     ] = None,
     times: Annotated[Path | None, typer.Option(help="Times of trajectories in KITTI format.")] = None,
-    align: Annotated[Alignment, typer.Option(help="What is free of the map's frame.")] = Alignment.SIM3,
+    align: Annotated[
+        Alignment,
+        typer.Option(
+            help="What may be fitted: nothing (none), rotation and translation (se3), or the scale too (sim3)."
+        ),
+    ] = Alignment.SIM3,
     within: Annotated[float, typer.Option(help="Metres from the true path up to which is compared.")] = 40.0,
     near: Annotated[float, typer.Option(help="Metres up to which a point counts as met.")] = 0.2,
     label_within: Annotated[

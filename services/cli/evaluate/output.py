@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
@@ -14,23 +15,47 @@ from services.evaluation.run.outcome import Report
 from services.runtime.errors import InputError, ResourceError
 
 _LOG_WIDTH = 160
+_BETWEEN = 2
+"""Blanks from column to column."""
+_LEAST_COLUMN = 20
+"""Characters below which a column's text is not folded."""
 
 JsonFlag = Annotated[Path | None, typer.Option("--json", help="Write everything measured to this file (JSON).")]
 PlotsFlag = Annotated[Path | None, typer.Option("--plots", help="Draw the pictures into this folder (PNG).")]
 
 
 def print_table(columns: Sequence[str], rows: Sequence[ComparisonRow]) -> None:
-    """One column for what is measured, then one for each of `columns`; in a log, which has no width, in long lines."""
-    table = Table(box=None, pad_edge=False)
-    table.add_column("", no_wrap=True)
-    for name in columns:
-        table.add_column(name, overflow="fold")
-    for row in rows:
-        table.add_row(row.what, *row.values)
+    """One column for what is measured, then one for each of `columns`; several tables where they do not fit beside
+    each other. A log has no width: its lines are long."""
     console = Console(markup=False, emoji=False)
     if not console.is_terminal:
         console.width = _LOG_WIDTH
-    console.print(table, highlight=False)
+    for number, chosen in enumerate(_beside_each_other(columns, rows, console.width)):
+        table = Table(box=None, pad_edge=False)
+        table.add_column("", no_wrap=True)
+        for column in chosen:
+            table.add_column(columns[column], overflow="fold")
+        for row in rows:
+            table.add_row(row.what, *(row.values[column] for column in chosen))
+        if number:
+            console.print()
+        console.print(table, highlight=False)
+
+
+def _beside_each_other(columns: Sequence[str], rows: Sequence[ComparisonRow], width: int) -> list[list[int]]:
+    """The columns of each table, by their places, all in order; a wide column is folded rather than left alone."""
+    left = width - max((cell_len(row.what) for row in rows), default=0)
+    groups: list[list[int]] = [[]]
+    taken = 0
+    for place, name in enumerate(columns):
+        cells = [cell_len(text) for text in (name, *(row.values[place] for row in rows))]
+        needed = _BETWEEN + min(max(cells), _LEAST_COLUMN)
+        if groups[-1] and taken + needed > left:
+            groups.append([])
+            taken = 0
+        groups[-1].append(place)
+        taken += needed
+    return groups
 
 
 def check_outputs(json_file: Path | None, plots: Path | None, *inputs: Path | None) -> Path | None:

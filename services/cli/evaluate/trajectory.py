@@ -30,7 +30,12 @@ def trajectory(
     sensor: Annotated[
         Path | None, typer.Option(help="sensor.yaml of an EuRoC camera, to bring the body's true poses to it (T_BS).")
     ] = None,
-    align: Annotated[Alignment, typer.Option(help="What is free of the estimate's frame.")] = Alignment.SIM3,
+    align: Annotated[
+        Alignment,
+        typer.Option(
+            help="What may be fitted: nothing (none), rotation and translation (se3), or the scale too (sim3)."
+        ),
+    ] = Alignment.SIM3,
     frames: Annotated[
         int | None, typer.Option(min=1, help="Frames in the input, for the coverage (default: the true poses).")
     ] = None,

@@ -7,12 +7,12 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from services.evaluation.bench.paths import RunPath
 from services.evaluation.bench.runs import BenchRun, RunStatus, tracked
 from services.evaluation.bench.table import groups
+from services.evaluation.pictures.figure import new_figure, save_figure
 
 _COLOURS = ("#7f7f7f", "#1f77b4", "#2e8b57", "#d62728", "#9467bd", "#e0a800", "#17becf", "#8c564b")
 _ACROSS = 3
@@ -39,7 +39,7 @@ def plot_errors(runs: Sequence[BenchRun], paths: Mapping[str, RunPath], path: Pa
             axes.plot(beside, rmse_m, marker="o", markersize=4, linestyle="none", color="black")
         _name_variants(axes, runs, source, variants)
         axes.set_ylim(bottom=0.0)
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def plot_trials(runs: Sequence[BenchRun], path: Path, label: str = "") -> None:
@@ -60,7 +60,7 @@ def plot_trials(runs: Sequence[BenchRun], path: Path, label: str = "") -> None:
         _name_variants(axes, runs, source, variants)
         axes.set_ylim(0.0, 1.15 * axes.get_ylim()[1])
         axes.legend(fontsize=7)
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def plot_axes(runs: Sequence[BenchRun], paths: Mapping[str, RunPath], source: str, path: Path, label: str = "") -> None:
@@ -68,8 +68,7 @@ def plot_axes(runs: Sequence[BenchRun], paths: Mapping[str, RunPath], source: st
 
     It is the one whose errors are in the middle of those that most variants were tracked in.
     """
-    figure = Figure(figsize=(10.0, 7.5), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(height_in=7.5, width_in=10.0)
     rows: Sequence[Axes] = figure.subplots(3, 1, sharex=True)
     variants = [variant for name, variant in groups(runs) if name == source]
     trial, chosen = _middle_trial(runs, paths, source)
@@ -91,7 +90,7 @@ def plot_axes(runs: Sequence[BenchRun], paths: Mapping[str, RunPath], source: st
     if chosen:
         rows[0].legend(fontsize=8)
     rows[0].set_title(" - ".join(part for part in (label, source, trial) if part))
-    _save(figure, path)
+    save_figure(figure, path)
 
 
 def _middle_trial(
@@ -113,8 +112,7 @@ def _panels(runs: Sequence[BenchRun], label: str, what: str) -> tuple[Figure, di
     across = min(len(inputs), _ACROSS)
     down = -(-len(inputs) // across)
     width_in = 1.6 + 1.1 * max(len({run.variant for run in runs}), 3)
-    figure = Figure(figsize=(width_in * across, 4.6 * down), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(height_in=4.6 * down, width_in=width_in * across)
     figure.supylabel(what, fontsize=9)
     if label:
         figure.suptitle(label)
@@ -146,7 +144,3 @@ def _rmse_m(run: BenchRun | None) -> float:
     if run is None or run.measures is None or run.measures.ate_sim3_m is None or _is_setback(run):
         return float("nan")
     return run.measures.ate_sim3_m
-
-
-def _save(figure: Figure, path: Path) -> None:
-    figure.savefig(path, metadata={"Software": None})

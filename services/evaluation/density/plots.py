@@ -26,7 +26,7 @@ def plot_density_error(densities: SessionDensities, path: Path) -> None:
     true_objects = [frame.true_objects for frame in frames]
     counts.step(seconds, true_objects, where="mid", color="black", linewidth=2.5, label="truth")
     counts.step(seconds, estimated, where="mid", color="#1f77b4", linewidth=1.4, label="map")
-    counts.set_ylim(bottom=0.0)
+    counts.set_ylim(0.0, max(1.0, counts.get_ylim()[1]))
     counts.set_ylabel(f"moving objects within {densities.radius * densities.metres_per_unit:.3g} m")
     counts.grid(visible=True, linewidth=0.3)
     counts.yaxis.set_major_locator(MaxNLocator(integer=True))

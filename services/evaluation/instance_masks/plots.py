@@ -30,7 +30,8 @@ def plot_precision_recall(found: Mapping[str, FoundScore], rules: FoundRules, pa
     axes.set_xlabel("recall")
     axes.set_ylabel("precision")
     axes.set_title(
-        f"IoU {rules.minimum_iou:g}, {rules.minimum_height_px:g} px high and more; dot: score {rules.minimum_score:g}",
+        f"precision over recall: IoU {rules.minimum_iou:g}, {rules.minimum_height_px:g} px high and more;"
+        f" dot: score {rules.minimum_score:g}",
         fontsize=10,
     )
     axes.grid(visible=True, linewidth=0.3)
@@ -73,6 +74,7 @@ def plot_class_confusion(confusion: ClassConfusion, path: Path) -> None:
         axes.text(column, row, str(confusion.counts[row, column]), ha="center", va="center", color=colour, fontsize=9)
     axes.set_xticks(range(size), [*names, "missed"], rotation=45, ha="right")
     axes.set_yticks(range(size), [*names, "nothing"])
+    axes.set_title("instances that cover each other", fontsize=10)
     axes.set_xlabel("found")
     axes.set_ylabel("true")
     save_figure(figure, path)

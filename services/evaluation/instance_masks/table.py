@@ -33,11 +33,10 @@ def mask_rows(score: MaskPrecision, found: Mapping[str, FoundScore], rules: Foun
     ]
     rows += [ComparisonRow(what, tuple(_number(getattr(side, name)) for side in sides)) for what, name in _ROWS]
     scores = [found[name] for name in score.by_category]
-    tall = f"at IoU {rules.minimum_iou:g}, {rules.minimum_height_px:g} px high and more"
-    sure = f"score {rules.minimum_score:g} and more"
+    counted = f"IoU {rules.minimum_iou:g}, {rules.minimum_height_px:g} px high, score {rules.minimum_score:g}"
     for what, values in (
-        (f"precision {tall}, {sure}", [_number(item.precision) for item in scores]),
-        (f"recall {tall}, {sure}", [_number(item.recall) for item in scores]),
+        (f"precision ({counted})", [_number(item.precision) for item in scores]),
+        (f"recall ({counted})", [_number(item.recall) for item in scores]),
         ("  found / wrong / missed", [_counts(item) for item in scores]),
         (f"highest recall at precision {_PRECISION_ASKED:g}", [_number(item.recall_at(0.5)) for item in scores]),
     ):

@@ -25,7 +25,7 @@ def plot_confusion(result: MovingMaskResult, path: Path) -> None:
     """One bar a true class, parted by what its pixels were taken for."""
     total = result.total
     names = class_names(total)
-    figure = new_figure(height_in=1.4 + 0.6 * len(total.classes))
+    figure = new_figure(height_in=1.7 + 0.6 * len(total.classes))
     axes = figure.add_subplot()
     for place, true in enumerate(reversed(total.classes)):
         pixels = total.confusion[true].sum()
@@ -42,6 +42,7 @@ def plot_confusion(result: MovingMaskResult, path: Path) -> None:
     for kind in total.classes:
         axes.barh([0], [0.0], color=_COLOURS[kind], label=f"found {names[kind]}")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, frameon=False)
+    figure.suptitle(f"what pixels are taken for, {len(result.by_frame)} frames", fontsize=10)
     save_figure(figure, path)
 
 
@@ -62,6 +63,7 @@ def plot_iou_over_frames(result: MovingMaskResult, path: Path) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("frame")
     axes.set_ylabel("IoU")
+    axes.set_title("IoU of each frame's masks", fontsize=10)
     axes.grid(visible=True, linewidth=0.3)
     axes.legend(loc="best", fontsize=8)
     save_figure(figure, path)

@@ -26,6 +26,7 @@ def plot_hota_by_iou(scores: Mapping[str, ClassScore], path: Path) -> None:
         axes.set_xlim(0.0, 1.0)
         axes.set_ylim(0.0, 1.03)
         axes.set_xlabel("IoU from which an object counts as found")
+        axes.set_ylabel("score, 0 to 1")
         true = f"{score.total.true_objects} objects in {score.total.true_detections} views"
         axes.set_title(f"{shown_name(category)}: {true}")
         axes.grid(visible=True, linewidth=0.3)
@@ -47,6 +48,7 @@ def plot_sequences(scores: Mapping[str, ClassScore], path: Path) -> None:
         axes.set_xticks(places, [*map(shown_name, known)])
         axes.set_ylim(0.0, 1.03)
         axes.set_title(f"{shown_name(category)}, by sequence")
+        axes.set_ylabel("score, 0 to 1")
         axes.grid(visible=True, axis="y", linewidth=0.3)
         axes.set_axisbelow(True)
         axes.legend(loc="upper right", fontsize=8, ncols=3)

@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 
 from schemas import topics
 from schemas.codec import decode
 from schemas.records import Image, MotionState, Objects
+from services.evaluation.pictures.figure import new_figure, save_figure
 from services.evaluation.run.plots import STATE_COLOURS
 from services.runtime.session_file import SessionFile
 
@@ -71,8 +70,7 @@ def plot_frames(frames: list[SeenFrame], path: Path) -> None:
     height, width = frames[0].image.pixels.shape[:2]
     rows = -(-len(frames) // _COLUMNS)
     row_in = _WIDTH_IN / _COLUMNS * height / width + 0.3
-    figure = Figure(figsize=(_WIDTH_IN, rows * row_in + 0.3), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(height_in=rows * row_in + 0.3, width_in=_WIDTH_IN)
     for number, frame in enumerate(frames):
         axes = figure.add_subplot(rows, _COLUMNS, number + 1)
         axes.imshow(tinted(frame), interpolation="nearest")
@@ -86,4 +84,4 @@ def plot_frames(frames: list[SeenFrame], path: Path) -> None:
     legend = {"moving": MotionState.MOVING, "standing or undecided": MotionState.NON_MOVING}
     for place, (name, state) in enumerate(legend.items()):
         figure.text(0.4 + 0.15 * place, 0.0, name, color=STATE_COLOURS[state], fontsize=8, va="bottom")
-    figure.savefig(path, metadata={"Software": None})
+    save_figure(figure, path)

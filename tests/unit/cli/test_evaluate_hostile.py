@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from services.cli.app import main
+from services.cli.evaluate.output import print_table
+from services.evaluation.run.comparison import ComparisonRow
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 
 Refused = Callable[..., str]
@@ -211,3 +213,15 @@ def test_reports_that_are_not_whole(refused: Refused, broken: dict[str, Any]) ->
         Path(name).mkdir()
         Path(name, "report.json").write_text(json.dumps(report))
     assert "b/report.json: not a whole report" in refused("run", "a", "b")
+
+
+def test_columns_that_do_not_fit_stand_in_tables_of_their_own(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("services.cli.evaluate.output._LOG_WIDTH", 60)
+    names = [f"class-{number}" for number in range(12)]
+    print_table(names, [ComparisonRow("a measure of twenty-six c.", tuple(f"{n}.000" for n in range(12)))])
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert max(map(len, lines)) <= 60
+    assert [name for line in lines[::3] for name in line.split()] == names
+    assert lines[1].split()[-3:] == ["0.000", "1.000", "2.000"]

@@ -46,7 +46,7 @@ def _dots(picture: Path) -> int:
     grey = cv2.imread(str(picture), cv2.IMREAD_GRAYSCALE)
     assert grey is not None
     blobs = cv2.connectedComponentsWithStats((grey < 40).astype(np.uint8))[2]
-    return sum(20 <= area <= 40 and width == height <= 8 for _, _, width, height, area in blobs[1:])
+    return sum(28 <= area <= 60 and width == height <= 10 for _, _, width, height, area in blobs[1:])
 
 
 def test_paths_of_lost_runs_are_not_among_those_compared(runs: list[BenchRun], tmp_path: Path) -> None:

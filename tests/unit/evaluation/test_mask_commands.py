@@ -71,7 +71,7 @@ def _report(path: Path) -> dict[str, Any]:
 def test_masks(evaluate: Evaluate, tmp_path: Path) -> None:
     truth, found = _label_folder(tmp_path / "truth", 0, 4), _label_folder(tmp_path / "found", 4)
     rows = _table(evaluate("masks", found, "--truth", truth, "--json", tmp_path / "m.json", "--plots", tmp_path / "p"))
-    assert rows["recall at IoU 0.5, 40 px high and more, score 0.3 and more"] == ["-", "0.750"]
+    assert rows["recall (IoU 0.5, 40 px high, score 0.3)"] == ["-", "0.750"]
     report = _report(tmp_path / "m.json")
     assert report["frames"]["without_result"] == ["000003"]
     # IoU is 36 / 44 = 0.82: found up to 0.80, seven of COCO's ten thresholds, at a recall of 6 of 8
