@@ -19,7 +19,7 @@ def registered_depth(
         return None
     first = log.image(topics.image, images[0])
     size = image_pixels(first, f"{log.name} {topics.image} message 0").shape[:2]
-    registered = []
+    registered: dict[str, list[int]] = {}
     for topic in topics.possible_depths:
         places = log.index(topic)
         if not places:
@@ -30,15 +30,14 @@ def registered_depth(
         except InputError:
             continue
         if shape == size and message.frame_id.lstrip("/") == first.frame_id.lstrip("/"):
-            registered.append(topic)
+            registered[topic] = sorted(place.stamp_ns for place in places)
     listed = ", ".join(registered or topics.possible_depths)
     why = "several could be the images' depth" if registered else "none is of the images' size and frame"
     if len(registered) == 1:
-        depth_times_ns = sorted(place.stamp_ns for place in log.index(registered[0]))
-        pairs = nearest_pairs([place.stamp_ns for place in images], depth_times_ns, FARTHEST_NS)
+        pairs = nearest_pairs([place.stamp_ns for place in images], registered[listed], FARTHEST_NS)
         if 2 * len(pairs) >= len(images):
             notes.append(f"{listed} is taken as the images' depth: same size and frame")
-            return registered[0]
+            return listed
         why = f"only {len(pairs)} of {len(images)} images have one within 0.02 s"
     notes.append(f"depth is not used: {why} ({listed}); camera.depth_topic names one")
     return None
