@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the camera says about one frame, in the order in which it says it."""
 
+import os
+
 from schemas import topics
 from schemas.records import (
     CameraCalibration,
@@ -30,10 +32,15 @@ def frame_records(frame: SourceFrame, source: Source) -> list[tuple[Topic, Camer
     present = [(topic, record) for topic, record in parts if record is not None]
     manifest = FrameManifest(
         frame.timestamp_ns,
-        source.name,
-        frame.name,
+        _as_text(source.name),
+        _as_text(frame.name),
         tuple(topic.key for topic, _ in present),
         source.frame_count,
         source.rate_hz,
     )
     return [(topics.MANIFEST, manifest), *present]
+
+
+def _as_text(name: str) -> str:
+    """A file's name may be any bytes, a message's text may not."""
+    return os.fsencode(name).decode("utf-8", errors="replace")

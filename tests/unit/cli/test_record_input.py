@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`kinemap record INPUT`: a camera that falls silent is left at once, and a bad frame loses nothing before it."""
 
+import os
 import signal
 import threading
 from pathlib import Path
@@ -90,6 +91,16 @@ def test_what_came_before_a_broken_image_is_recorded_whole(
     assert [entry.fields["note"] for entry in caplog.records if entry.message == "assumed"] == [  # type: ignore[attr-defined]
         "no times.txt in drive: times are assumed at 10 Hz"
     ]
+
+
+def test_a_name_that_is_no_text_is_recorded_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = _folder(tmp_path / "drive", 1)
+    (folder / "000.png").rename(os.fsdecode(os.fsencode(folder) + b"/\xff7.png"))
+    _keep_process(monkeypatch)
+    record(str(folder), tmp_path / "a.mcap", settings=["run.session=made-up"])
+    with SessionFile(tmp_path / "a.mcap") as session:
+        (manifest,) = session.messages([topics.MANIFEST.key])
+        assert decode(topics.MANIFEST, manifest.payload).frame_name == "\ufffd7"
 
 
 def test_a_camera_left_before_its_first_frame_records_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
