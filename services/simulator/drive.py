@@ -20,7 +20,7 @@ from services.simulator.rendering.bands import Bands
 from services.simulator.rendering.flow import FlowTruth, MovedTriangles, View
 from services.simulator.rendering.instances import visible_instances
 from services.simulator.rendering.light import LIGHTS
-from services.simulator.rendering.nearest import Hits
+from services.simulator.rendering.nearest import Sight
 from services.simulator.rendering.renderer import RenderedView, Renderer
 from services.simulator.rendering.scene import Moment, Scene
 from services.simulator.rendering.shading import Shader
@@ -58,7 +58,7 @@ class Drive:
         shader = Shader(world.atlas, world.atlas.index[world.sky_texture], light)
         self._renderer = Renderer(self.camera, self._scene.static, shader, bands, shadows)
         self._flow_truth = FlowTruth(self.camera, bands)
-        self._seen: OrderedDict[int, tuple[Moment, Hits]] = OrderedDict()
+        self._seen: OrderedDict[int, tuple[Moment, Sight]] = OrderedDict()
 
     @property
     def frame_count(self) -> int:
@@ -79,8 +79,8 @@ class Drive:
         Raises:
             InputError: no such frame.
         """
-        moment, hits = self._seen_at(index)
-        view = self._view(moment, hits)
+        moment, sight = self._seen_at(index)
+        view, hits = self._renderer.render(sight, moment.footprints), sight.hits
         shown = self._timeline.shown(index)
         image, right = self._images(shown) if shown != index else self._images(index, view)
         depth = np.where(np.isfinite(hits.depth_m), hits.depth_m, np.float32(0.0))
@@ -96,11 +96,11 @@ class Drive:
             InputError: no such frame, or it is the last one.
         """
         next_t_s = self._time_s(index + 1)
-        moment, hits = self._seen_at(index)
-        next_moment, next_hits = self._seen_at(index + 1)
+        moment, sight = self._seen_at(index)
+        _, next_sight = self._seen_at(index + 1)
         moved = self._moved(moment, next_t_s)
-        then = View(next_moment.world_from_camera, next_hits)
-        return self._flow_truth.between(hits, moment.world_from_camera, moved, then)
+        then = View(next_sight.world_from_camera, next_sight.hits)
+        return self._flow_truth.between(sight.hits, sight.world_from_camera, moved, then)
 
     def _images(self, index: int, view: RenderedView | None = None) -> tuple[Image, Image | None]:
         """What both cameras deliver of the light at a frame."""
@@ -108,12 +108,12 @@ class Drive:
         if self._timeline.is_black(index):
             black = [self._sensor.black((self.camera.height, self.camera.width, 3), index, eye) for eye in range(2)]
             return black[0], black[1] if baseline_m else None
-        moment, hits = self._seen_at(index)
-        left = self._exposed(index, moment, view or self._view(moment, hits), 0.0)
+        moment, sight = self._seen_at(index)
+        left = self._exposed(index, moment, view or self._renderer.render(sight, moment.footprints), 0.0)
         if not baseline_m:
             return left, None
-        pose = _beside(moment.world_from_camera, baseline_m)
-        seen = self._renderer.render(pose, moment.moving, moment.footprints)
+        beside = self._renderer.sight(_beside(moment.world_from_camera, baseline_m), moment.moving)
+        seen = self._renderer.render(beside, moment.footprints)
         return left, self._exposed(index, moment, seen, baseline_m)
 
     def _exposed(self, index: int, moment: Moment, view: RenderedView, baseline_m: float) -> Image:
@@ -128,14 +128,11 @@ class Drive:
             flow_px = self._flow_truth.between(view.hits, pose, moved, View(next_pose, None)).flow_px
         return self._sensor.exposed(view.image, flow_px, index, moment.t_s, int(baseline_m > 0.0))
 
-    def _view(self, moment: Moment, hits: Hits) -> RenderedView:
-        return self._renderer.render(moment.world_from_camera, moment.moving, moment.footprints, hits)
-
-    def _seen_at(self, index: int) -> tuple[Moment, Hits]:
+    def _seen_at(self, index: int) -> tuple[Moment, Sight]:
         """The moment of a frame and what the (left) camera sees of it."""
         if index not in self._seen:
             moment = self._scene.at(self._time_s(index))
-            self._seen[index] = moment, self._renderer.cast(moment.world_from_camera, moment.moving)
+            self._seen[index] = moment, self._renderer.sight(moment.world_from_camera, moment.moving)
         self._seen.move_to_end(index)
         if len(self._seen) > _KEPT:
             self._seen.popitem(last=False)

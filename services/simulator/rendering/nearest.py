@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,21 +42,27 @@ class Sight:
     """
 
     def __init__(self, camera: Camera, world_from_camera: Floats, static: Surfaces, moving: Surfaces | None) -> None:
-        self._pose, self._static, self._moving = world_from_camera, static, moving
+        self._camera, self._static = camera, static
+        self.world_from_camera, self.moving = world_from_camera, moving
         shape = camera.height, camera.width
         self._covered = _covered(camera, world_from_camera, moving.table) if moving else np.zeros(shape, bool)
 
+    @cached_property
+    def hits(self) -> Hits:
+        """Surfaces of all pixels."""
+        return self.nearest(*self._camera.normalised())
+
     def nearest(self, x: Floats32, y: Floats32, within: tuple[NDArray[np.intp], ...] | None = None) -> Hits:
         """Surfaces in the directions x / z and y / z, both (N, M): those of all pixels, or of pixels `within`."""
-        axes = self._pose[:3, :3].astype(np.float32)
+        axes = self.world_from_camera[:3, :3].astype(np.float32)
         directions = np.empty((x.size, 3), np.float32)
         for k in range(3):
             directions[:, k] = (axes[k, 0] * x + axes[k, 1] * y + axes[k, 2]).ravel()
-        origin = self._pose[:3, 3]
+        origin = self.world_from_camera[:3, 3]
         depth, triangle = self._static.rays.cast(origin, directions)
-        if self._moving is not None:
+        if self.moving is not None:
             near = np.flatnonzero(self._covered if within is None else self._covered[within])
-            nearer_depth, nearer = self._moving.rays.cast(origin, directions[near])
+            nearer_depth, nearer = self.moving.rays.cast(origin, directions[near])
             closer = nearer_depth < depth[near]
             depth[near[closer]] = nearer_depth[closer]
             triangle[near[closer]] = nearer[closer] + len(self._static.table)

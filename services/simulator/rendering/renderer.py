@@ -46,20 +46,13 @@ class Renderer:
         self._x, self._y = camera.normalised()
         self._contact = ContactShade(camera)
 
-    def cast(self, world_from_camera: Floats, moving: Surfaces | None) -> Hits:
-        """Nearest surfaces of every pixel."""
-        return Sight(self._camera, world_from_camera, self._static, moving).nearest(self._x, self._y)
+    def sight(self, world_from_camera: Floats, moving: Surfaces | None) -> Sight:
+        """What a pose sees."""
+        return Sight(self._camera, world_from_camera, self._static, moving)
 
-    def render(
-        self,
-        world_from_camera: Floats,
-        moving: Surfaces | None,
-        footprints: Sequence[Footprint],
-        hits: Hits | None = None,
-    ) -> RenderedView:
-        """Image and surfaces seen from a pose; the ground is darker round `footprints`. hits: where already known."""
-        sight = Sight(self._camera, world_from_camera, self._static, moving)
-        hits = hits or sight.nearest(self._x, self._y)
+    def render(self, sight: Sight, footprints: Sequence[Footprint]) -> RenderedView:
+        """Image and surfaces of what a pose sees; the ground is darker round `footprints`."""
+        world_from_camera, moving, hits = sight.world_from_camera, sight.moving, sight.hits
         tables = [self._static.table] + ([moving.table] if moving else [])
         edge = np.nonzero(_edges(_per_triangle([table.part for table in tables], renumber=True), hits.triangle))
         beside = self._look_again(sight, edge)

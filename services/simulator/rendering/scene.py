@@ -16,7 +16,7 @@ from services.simulator.rendering.bounds import BOX_CORNERS, windows
 from services.simulator.rendering.contact import Footprint
 from services.simulator.rendering.nearest import Surfaces
 from services.simulator.rendering.triangles import TriangleTable, joined, table_of
-from services.simulator.rendering.whereabouts import Whereabouts
+from services.simulator.rendering.whereabouts import Reach, Whereabouts
 from services.simulator.shapes.meshes import merged
 from services.simulator.worlds.world import World
 
@@ -26,6 +26,8 @@ _VIEW_RANGE_M = 180.0
 """Moving actors farther away than this are left out: three pixels of the default lens."""
 _SHADOW_RANGE_M = 50.0
 """Whoever is as near as this is there although not in sight, where shadows are cast."""
+_TILT = 1.2
+"""How much wider a camera sees on the plane for being tilted a little."""
 _LIMBS_M = 0.4
 """How far limbs may swing beyond the cuboid."""
 
@@ -63,6 +65,8 @@ class Scene:
         self._baseline_m, self._shadows = baseline_m, shadows
         self._restless = [actor for actor in world.actors if not actor.always_still]
         self._whereabouts = Whereabouts(self._restless)
+        slope = _TILT * float(np.abs(camera.normalised()[0]).max())
+        self._reach = Reach(_VIEW_RANGE_M, slope, _SHADOW_RANGE_M if shadows else 0.0)
         self._still = {actor.instance_id: actor.at(0.0) for actor in world.actors if actor.always_still}
         table = table_of(world.mesh, world.mesh.vertices, np.zeros(len(world.mesh.triangles), np.int32))
         parked = [_table_at([(a, self._still[a.instance_id])]) for a in world.actors if a.always_still]
@@ -81,8 +85,7 @@ class Scene:
 
     def _near(self, world_from_camera: Floats, t_s: float) -> list[tuple[Actor, ActorState]]:
         near = [(actor, self._still[actor.instance_id]) for actor in self._world.actors if actor.always_still]
-        behind_m = _SHADOW_RANGE_M if self._shadows else 0.0
-        for number in self._whereabouts.perhaps_in_sight(world_from_camera, t_s, _VIEW_RANGE_M, behind_m):
+        for number in self._whereabouts.perhaps_in_sight(world_from_camera, t_s, self._reach):
             actor = self._restless[number]
             state = actor.at(t_s)
             if not state.present:
