@@ -19,8 +19,11 @@ def bench_folder(out: Path | None, now: datetime | None = None) -> Path:
     Raises InputError for a folder that holds anything but a benchmark.
     """
     folder = out or RUNS / (now or datetime.now()).strftime("bench-%Y%m%d-%H%M%S")
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"--out {folder}: is a file, expected a folder")
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"--out {folder}: is a file, expected a folder")
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot be a folder ({error.strerror}), expected another name") from error
     if folder.is_dir() and any(folder.iterdir()) and not (folder / BENCH_NAME).is_file():
         raise InputError(f"--out {folder}: no benchmark's folder, expected one, or one that is empty or does not exist")
     return folder.resolve()

@@ -73,13 +73,16 @@ def bench(
     named = tuple(parse_variant(text) for text in variant or ())
     request = BenchRequest(
         inputs=tuple(inputs or (SIMULATOR,)),
-        variants=(stage_variants(stages or ",".join(STAGES)) if stages or not named else ()) + named,
+        variants=(() if stages is None and named else stage_variants(",".join(STAGES) if stages is None else stages))
+        + named,
         seeds=parse_seeds(seeds) if seeds is not None else (),
         repeat=repeat,
         frames=frames,
         config=config,
         settings=tuple(settings or ()),
     )
+    if not label.isprintable() or "<!--" in label:
+        raise InputError(f"--label {label!r}: expected one line of text without a comment of Markdown (<!--)")
     if page is not None and table is None:
         raise InputError(f"--page {page}: expected --table with the name of the table on it")
     if table is not None:
@@ -107,7 +110,10 @@ def bench(
 def _open_inputs(plan: list[PlannedRun]) -> None:
     """Open each input once, as its runs will. Raises InputError for one that cannot be used."""
     for run in {run.input: run for run in plan}.values():
-        open_briefly(load_config(None, run.configuration))
+        try:
+            open_briefly(load_config(None, run.configuration))
+        except OSError as error:
+            raise InputError(f"input {run.input}: cannot be opened ({error.strerror or error})") from error
 
 
 def _command(inputs: Sequence[str], options: Mapping[str, object]) -> str:

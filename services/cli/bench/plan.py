@@ -145,8 +145,12 @@ def _resolve(request: BenchRequest, variant: Variant, given: str, seed: int | No
     overrides = merge_overrides(parse_settings(list(request.settings)), variant.overrides)
     own: Overrides = {"camera": {"input": given, "max_frames": request.frames}, "simulator": {"seed": seed}}
     config = load_config(request.config, merge_overrides(overrides, own))
-    if config.camera.input != SIMULATOR and Path(config.camera.input).exists():
-        config.camera.input = str(Path(config.camera.input).resolve())
+    if config.camera.input != SIMULATOR:
+        try:
+            if Path(config.camera.input).exists():
+                config.camera.input = str(Path(config.camera.input).resolve())
+        except OSError as error:
+            raise InputError(f"input {config.camera.input}: cannot be opened ({error.strerror})") from error
     return config
 
 

@@ -27,6 +27,11 @@ from services.cli.bench.command import _command
         (("--config", "none.toml"), ("none.toml cannot be read",)),
         (("--out", "half.md"), ("--out half.md: is a file",)),
         (("--out", "."), ("--out .: no benchmark's folder",)),
+        (("--out", "a" * 300), ("--out aaa", "cannot be a folder (File name too long)")),
+        (("a" * 5000,), ("input aaa", "cannot be opened (File name too long)")),
+        (("--stages", ""), ("is no stage",)),
+        (("--label", "<!-- x: end -->"), ("--label '<!-- x: end -->': expected one line",)),
+        (("--label", "two\nlines"), ("--label 'two\\nlines': expected one line",)),
     ],
 )
 def test_bad_input_is_one_line_and_starts_nothing(

@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 from rich.console import Console
 
+import services
 from services.cli.bench.bench_folder import bench_folder, reserved
 from services.cli.bench.child_run import RunEnd, RunningRun
 from services.cli.bench.drive import FailedRunsError, InterruptedBenchError, run_bench
-from services.cli.bench.kept_runs import KeptRuns
+from services.cli.bench.kept_runs import _CODE_OF_NO_RUN, KeptRuns
 from services.cli.bench.plan import BenchRequest, PlannedRun, plan_runs, stage_variants
 from services.cli.bench.results import BenchOutput
 from services.cli.bench.schedule import Schedule
@@ -293,3 +294,18 @@ def test_one_benchmark_a_folder_at_a_time(bench: Bench) -> None:
         bench.run(PlayedRunner())
     bench.run(PlayedRunner())
     shutil.rmtree(bench.folder)
+
+
+@pytest.mark.parametrize("half", ["{", "[]", "{}", '{"failure": ""}'])
+def test_a_note_of_a_run_that_was_cut_off_has_the_run_done_again(bench: Bench, half: str) -> None:
+    bench.run(PlayedRunner())
+    (bench.folder / PLAN[0].folder).with_name(f"{PLAN[0].folder.name}.json").write_text(half)
+    again = PlayedRunner()
+    bench.run(again)
+    assert again.started == [PLAN[0].name]
+
+
+def test_a_benchmarks_own_code_is_none_of_what_its_runs_are_made_by() -> None:
+    root = Path(services.__path__[0])
+    for prefix in _CODE_OF_NO_RUN:
+        assert any(str(file.relative_to(root)).startswith(prefix) for file in root.rglob("*.py")), prefix
