@@ -43,7 +43,7 @@ def closest(options: DriveOptions, end_s: float, step_s: float) -> tuple[float, 
     ],
 )
 def test_nobody_touches_anybody(options: DriveOptions) -> None:
-    least, near = closest(options, 30.0, 0.5)
+    least, near = closest(options, 24.0, 0.6)
     assert least > 0.0
     assert near > 20
 

@@ -3,6 +3,7 @@
 
 from collections import defaultdict
 
+import cv2
 import numpy as np
 import pytest
 
@@ -65,7 +66,7 @@ def test_every_situation_occurs() -> None:
         options = drive(seed, 0.45)
         actors, camera = planned(options)
         loop = town(seed).loop
-        times = np.arange(0.0, 60.0, 0.5)
+        times = np.arange(0.0, 60.0, 0.75)
         poses = np.array([camera.world_from_camera(t) for t in times])
         speed = np.asarray(camera.speed_m_s(times))
         met["the camera stands and goes on"] += int(((speed[:-1] < 0.05) & (speed[1:] >= 0.05)).sum())
@@ -133,3 +134,34 @@ def test_a_driver_keeps_his_distance_and_speed() -> None:
     assert even == pytest.approx(0.0, abs=1e-9)
     assert close < -1.0
     assert -2.0 <= fast < -0.5
+
+
+def moving_share(options: DriveOptions) -> float:
+    """Median share of a 640x192 image that the cuboids of what moves cover; nothing hides them here."""
+    actors, camera = planned(options)
+    movers = [actor for actor in actors if not actor.always_still]
+    box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0.0, 1.0)])
+    shares = []
+    for t_s in np.arange(0.0, 30.0, 1.0):
+        pose = camera.world_from_camera(t_s)
+        image = np.zeros((96, 320), np.uint8)
+        for actor in movers:
+            state = actor.at(t_s)
+            if not (state.present and state.moving):
+                continue
+            world = box * actor.size_m @ state.world_from_object[:3, :3].T + state.world_from_object[:3, 3]
+            point = (world - pose[:3, 3]) @ pose[:3, :3]
+            if point[:, 2].min() > 0.5 and point[:, 2].max() < 90.0:
+                pixel = point[:, :2] / point[:, 2:] * 190.7 + [159.5, 47.5]
+                cv2.fillConvexPoly(image, cv2.convexHull(pixel.round().astype(np.int32)), 1)
+        shares.append(image.mean())
+    return float(np.median(shares))
+
+
+def test_traffic_says_how_much_of_the_image_moves() -> None:
+    little, usual, dense = (
+        np.mean([moving_share(drive(seed, traffic, 320)) for seed in (1, 2)]) for traffic in (0.1, 0.3, 1.0)
+    )
+    assert little < usual < dense
+    assert 0.02 < usual < 0.15
+    assert dense > 0.2

@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 EGO_LENGTH_M, EGO_WIDTH_M = 4.4, 1.8
 LONG_M = 7.0
 """Vehicles longer than this keep to one lane."""
+_HIGH_M = 1.7
 _BASE_M_S = (6.0, 14.0)
 
 
@@ -44,7 +45,7 @@ class Vehicle:
 
 def camera_car(speed_m_s: float, traffic: float) -> Vehicle:
     """The car that the camera is in."""
-    return Vehicle(None, 0, EGO_LENGTH_M, EGO_WIDTH_M, speed_m_s, 1.5, 2.0, 1.2 - 0.4 * traffic, 3.0)
+    return Vehicle(None, 0, EGO_LENGTH_M, EGO_WIDTH_M, speed_m_s, 1.6, 2.0, 1.2 - 0.5 * traffic, 2.4)
 
 
 def draw_vehicle(
@@ -54,7 +55,9 @@ def draw_vehicle(
     base = float(np.clip(base_m_s, *_BASE_M_S))
     if style is None:
         kinds = [kind for kind in KINDS if lane == 1 or kind.in_every_lane]
-        weight = np.array([kind.share for kind in kinds])
+        # Dense traffic hides more of the street: more of it is high.
+        high = np.array([kind.in_every_lane and kind.size_m[2] > _HIGH_M for kind in kinds])
+        weight = np.array([kind.share for kind in kinds]) * (1.0 + 1.5 * traffic * high)
         style = kinds[int(rng.choice(len(kinds), p=weight / weight.sum()))]
     factor = float(rng.uniform(0.94, 1.22) if lane == 0 else rng.uniform(0.74, 1.12))
     wanted = base * factor * (0.88 if style.size_m[0] > LONG_M else 1.0)

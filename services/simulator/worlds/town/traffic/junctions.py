@@ -19,9 +19,11 @@ _LOOKS_M = 9.0
 _LINE_M = 1.2
 """Bumpers stop this far ahead of the end of the side street's track, where turns begin."""
 _PATIENCE_S = 9.0
-_FLOW_S = 45.0
-_CAMERA_REST_S, _CAMERA_NEAR_M = 40.0, 70.0
+_FLOW_S = 50.0
+_CAMERA_REST_S, _CAMERA_NEAR_M = 36.0, 70.0
+_STANDS_M_S = 0.3
 _LIGHT_TRAFFIC = 0.15
+_COMING_M, _TEMPTING = (22.0, 44.0), (0.5, 0.0)
 _REST_S = 6.0
 """After others have crossed, the loop goes on for so long at least."""
 _FOLLOW_S = 4.0
@@ -67,13 +69,14 @@ class Junction:
                 site.change(SiteState.OPEN, now_s)
         elif site.state is SiteState.CROSSED:
             self._released &= set(np.flatnonzero(state.active).tolist())
-            if now_s - site.since_s < _FOLLOW_S and self._only_straight(state, fronts):
+            if not site.needs_room and now_s - site.since_s < _FOLLOW_S and self._only_straight(state, fronts):
                 self._released |= {row for row in fronts if self._has_room(state, row)}
             waiting = [row for row in self._released if state.track[row] in self._tracks_in()]
             if not waiting and not self._inside(state):
                 self._released.clear()
                 site.change(SiteState.OPEN, now_s)
         site.hold(state, rows)
+        site.keep_clear(state, rows)
         self._hold_side(state, fronts)
         self._turn_off(state, rows)
 
@@ -113,17 +116,27 @@ class Junction:
         link = self._link(state, row)
         arm = self._network.arms[link.arm]
         if (
-            not self.site.is_alone()
+            (link.move != "straight" and not self.site.is_alone())
             or now_s - self.site.since_s < _REST_S
             or not self._has_room(state, row, slow_only=True)
         ):
             return
         ways = (arm.way,) if link.move == "right" else (0, 1)
-        near = float(self.site.ahead_m(state, np.zeros(1, np.intp))[0]) < _CAMERA_NEAR_M
+        camera_m = float(self.site.ahead_m(state, np.zeros(1, np.intp))[0])
         impatient = now_s - self._waits_since[row] > _PATIENCE_S and now_s - self.site.since_s > _FLOW_S
-        light = self._has_light and impatient and not (near and now_s - camera_free_s < _CAMERA_REST_S)
+        rested = now_s - camera_free_s > _CAMERA_REST_S
+        stands = state.speed_m_s[0] < _STANDS_M_S and link.move == "straight"
+        light = impatient and (rested or stands or camera_m > _CAMERA_NEAR_M)
+        # Now and then the light turns just when the camera comes.
+        light |= rested and _COMING_M[0] < camera_m < _COMING_M[1] and self._tempted(row)
+        light &= self._has_light
         if light or self.site.gap_for_all(state, rows, ways):
             self.site.close(state, rows, now_s, ways)
+            self.site.needs_room = link.move != "straight"
+
+    def _tempted(self, row: int) -> bool:
+        draw = np.random.default_rng([self._seed, 50, row, self._number]).random()
+        return bool(draw < _TEMPTING[0] + _TEMPTING[1] * self._traffic)
 
     def _has_room(self, state: VehicleState, row: int, *, slow_only: bool = False) -> bool:
         """Whether the way that a vehicle wants to take is free at its end; slow_only: of those who stay."""

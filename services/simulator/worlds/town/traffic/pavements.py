@@ -51,7 +51,7 @@ def pedestrians(plan: TownPlan, options: DriveOptions) -> list[Pedestrian]:
 
 def walking_per_m(traffic: float) -> float:
     """Walkers on a metre of one pavement."""
-    return 0.012 + 0.075 * traffic
+    return 0.012 + 0.11 * traffic
 
 
 def _stretches(plan: TownPlan, way: int) -> list[tuple[float, float]]:

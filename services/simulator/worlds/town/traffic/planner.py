@@ -58,7 +58,9 @@ class _Planner:
         self._parked = parked_vehicles(options, parking_bays(plan))
         starters = [one for one in self._parked if one.starts]
         self._pull_outs = [PullOut(one, len(self._placed) + k) for k, one in enumerate(starters)]
-        self._arrivals = side_arrivals(options, self._network, self._end_s)
+        self._arrivals = side_arrivals(
+            options, self._network, [crossing.s_m for crossing in plan.crossings], self._end_s
+        )
         rng = np.random.default_rng([options.seed_of_traffic, 45])
         self._crossers = draw_crossers(rng, len(plan.zebras_m), options.traffic)
 
@@ -82,11 +84,14 @@ class _Planner:
             self._add_person(crosser.path(self._plan), crosser.speed(self._end_s), crosser.look)
         for person in pedestrians(self._plan, options):
             self._add_person(person.path, person.speed, person.look)
+        # Who has not come by the end keeps his number, so that a longer drive begins with the same ones.
+        first_id = len(self._actors) + 1
         for number, arrival in enumerate(self._arrivals):
             row = len(self._placed) + len(self._pull_outs) + number
             if state.enter_step[row] >= 0:
                 begin_s = float(state.enter_step[row]) * STEP_S
-                self._add_vehicle(arrival.vehicle, ways.path(row, arrival.vehicle), speeds[row], begin_s)
+                path = ways.path(row, arrival.vehicle)
+                self._add_vehicle(arrival.vehicle, path, speeds[row], begin_s, first_id + number)
         return self._actors, camera
 
     def _simulated(self) -> tuple[VehicleState, list[Floats]]:
@@ -117,7 +122,9 @@ class _Planner:
         steps = int(np.ceil(self._end_s / STEP_S))
         return state, TrafficSimulation(state, places, barred_track(options)).run(steps)
 
-    def _add_vehicle(self, vehicle: Vehicle, path: Path, speeds: Floats, begin_s: float) -> None:
+    def _add_vehicle(
+        self, vehicle: Vehicle, path: Path, speeds: Floats, begin_s: float, number: int | None = None
+    ) -> None:
         assert vehicle.style is not None
         times = begin_s + STEP_S * np.arange(len(speeds))
         profile = SpeedProfile(list(zip(times.tolist(), speeds.tolist(), strict=True)))
@@ -125,7 +132,7 @@ class _Planner:
         if vehicle.style is BICYCLE:
             looks.append(self._wardrobe.rider(vehicle.look))
         for look in looks:
-            self._actors.append(Actor(len(self._actors) + 1, path=path, speed=profile, **look))
+            self._actors.append(Actor(number or len(self._actors) + 1, path=path, speed=profile, **look))
 
     def _add_person(self, path: Path, speed: SpeedProfile, look: int) -> None:
         self._actors.append(Actor(len(self._actors) + 1, path=path, speed=speed, **self._wardrobe.person(look)))

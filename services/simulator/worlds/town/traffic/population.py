@@ -61,7 +61,7 @@ def loop_population(options: DriveOptions, tracks: Tracks) -> list[Placed]:
 
 def fill_of(traffic: float) -> float:
     """Share of the road's room that is taken."""
-    return float(0.9 * traffic**1.2)
+    return float(0.8 * traffic**1.15)
 
 
 def _lane(options: DriveOptions, tracks: Tracks, track: int, start_m: float) -> list[Placed]:

@@ -16,6 +16,8 @@ Ints = NDArray[np.intp]
 _ENTRY_ROOM_M = 14.0
 _CLAIM_M = TURN_M
 """No farther back, for there the traffic stands at its stop line."""
+_USUAL_M_S, _AHEAD_M = 6.5, 38.0
+"""Who is to meet the camera's car reaches his stop line at about this speed while it is this far away."""
 _CLEARS_M = 7.0
 """A vehicle that turns off is in the way on the lane it left for so long behind its own half length."""
 
@@ -37,7 +39,7 @@ class SideTraffic:
             self._next_track(state, row)
         for row in side[state.beside[side] < 0].tolist():
             self._claim_lane(state, row)
-        due = [number for number in self._coming if self._arrivals[number].time_s <= now_s]
+        due = [number for number in self._coming if self._is_due(state, self._arrivals[number], now_s)]
         for number in due:
             arrival, row = self._arrivals[number], self._first_row + number
             there = state.active & (state.track == arrival.track)
@@ -47,6 +49,14 @@ class SideTraffic:
                 state.routes[row] = list(arrival.route)
                 state.enter(row, round(now_s / self._step_s), arrival.track, arrival.x_m, speed)
                 self._coming.remove(number)
+
+    @staticmethod
+    def _is_due(state: VehicleState, arrival: Arrival, now_s: float) -> bool:
+        if arrival.meets_s_m is None:
+            return arrival.time_s <= now_s
+        away = (arrival.meets_s_m - state.x_m[0]) % state.tracks.length_m[0]
+        takes_s = state.tracks.length_m[arrival.track] / _USUAL_M_S
+        return bool(away < _AHEAD_M + takes_s * max(float(state.speed_m_s[0]), 0.5 * float(state.wanted_m_s[0])))
 
     def _next_track(self, state: VehicleState, row: int) -> None:
         here = int(state.track[row])

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.worlds.town.traffic.car_following import following_acceleration
+from services.simulator.worlds.town.traffic.car_following import HARDEST_M_S2, following_acceleration
 from services.simulator.worlds.town.traffic.lane_changes import LaneChanges
 from services.simulator.worlds.town.traffic.state import Order, VehicleState
 
@@ -19,6 +19,7 @@ Ints = NDArray[np.intp]
 STEP_S = 0.1
 _LINE_GAP_M = 0.6
 """Cars stop this far ahead of a stop line."""
+_LINE_MARGIN_M, _FIRM_M_S2 = 0.1, 1.0
 _STANDS_M_S = 0.3
 _CORNER_BRAKE_M_S2 = 2.5
 
@@ -69,6 +70,11 @@ class TrafficSimulation:
         if len(gated):
             gap = state.gate_m[gated] + state.drivers.standing_gap_m[gated] - _LINE_GAP_M
             stopping = self._following(gated, gap, np.zeros(len(gated)))
+            # The model only creeps up to where it wants to stand; a stop line must hold.
+            held = state.speed_m_s[gated]
+            needed = held * held / (2.0 * np.maximum(state.gate_m[gated] - _LINE_MARGIN_M, _LINE_MARGIN_M))
+            stopping = np.where(needed > _FIRM_M_S2, np.minimum(stopping, -needed), stopping)
+            stopping = np.maximum(stopping, -HARDEST_M_S2)
             acceleration[gated] = np.minimum(acceleration[gated], stopping)
         later = np.maximum(speed + acceleration[rows] * STEP_S, 0.0)
         later = np.minimum(later, self._allowed(rows, speed))

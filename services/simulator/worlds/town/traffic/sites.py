@@ -22,7 +22,9 @@ _REACTION_S = 1.0
 _GOING_M = 12.0
 """Who stands nearer than this is about to go, too."""
 _SIGHT_M = 110.0
+_ROLLED_M, _ROLLS_M_S = 0.7, 1.0
 _NEIGHBOUR_M = 40.0
+_SLOW_M_S, _QUEUE_M, _SPACING_M = 1.0, 30.0, 2.2
 _CLEARING_S = 6.0
 """A site whose cars do not get away within this is opened again."""
 
@@ -42,6 +44,7 @@ class Site:
         self.middle_m = 0.5 * (low_m + high_m)
         self._reach_m = 0.5 * (high_m - low_m) + STOP_AHEAD_M
         self.state = SiteState.OPEN
+        self.needs_room = True
         self.since_s = -np.inf
         self.busy_until_s = -np.inf
         self._neighbours: list[Site] = []
@@ -57,8 +60,8 @@ class Site:
                 self._neighbours.append(site)
 
     def is_alone(self) -> bool:
-        """Whether nobody crosses next to it."""
-        return all(site.state is SiteState.OPEN for site in self._neighbours)
+        """Whether nobody next to it needs, or might turn into, the room ahead of its stop lines."""
+        return all(site.state is SiteState.OPEN or not site.needs_room for site in self._neighbours)
 
     def change(self, state: SiteState, now_s: float) -> None:
         """Go into another state."""
@@ -92,6 +95,25 @@ class Site:
         self._passes[rows] = self.ahead_m(state, rows) < speed * speed / (2.0 * _COMFORT_M_S2) + 0.3 * speed
         self.change(SiteState.CLOSING, now_s)
 
+    def keep_clear(self, state: VehicleState, rows: Ints) -> None:
+        """Hold whoever would come to stand inside, for want of room between those ahead of him behind the site."""
+        round_m, zone_m = state.tracks.length_m[0], 2.0 * self._reach_m
+        ahead = self.ahead_m(state, rows)
+        past = round_m - ahead
+        slow = (state.speed_m_s[rows] < _SLOW_M_S) & (past < zone_m + _QUEUE_M)
+        for track in np.unique(state.track[rows[slow]]).tolist():
+            mine = state.track[rows] == track
+            queued = mine & slow
+            back = float((past - state.length_m[rows])[queued].min())
+            between = mine & (past < back + state.length_m[rows]) & ~queued
+            room = back - zone_m - float((state.length_m[rows][between] + _SPACING_M).sum())
+            coming = np.flatnonzero(mine & (ahead < _QUEUE_M))
+            if len(coming):
+                first = coming[np.argmin(ahead[coming])]
+                row = rows[first]
+                if room < state.length_m[row] + _SPACING_M:
+                    state.gate_m[row] = min(state.gate_m[row], float(ahead[first]))
+
     def is_empty(self, state: VehicleState, rows: Ints) -> bool:
         """Whether everybody who could not stop is through."""
         rows = _going(state, rows, self._ways)
@@ -108,8 +130,11 @@ class Site:
             return
         rows = _going(state, rows, self._ways)
         ahead = self.ahead_m(state, rows)
-        held = (ahead < _SIGHT_M) & ~self._passes[rows]
-        state.gate_m[rows[held]] = np.minimum(state.gate_m[rows[held]], ahead[held])
+        # Who rolled over his line by a hand's breadth still stands ahead of what is crossed.
+        over = (state.tracks.length_m[0] - ahead < _ROLLED_M) & (state.speed_m_s[rows] < _ROLLS_M_S)
+        held = ((ahead < _SIGHT_M) | over) & ~self._passes[rows]
+        gate = np.where(over, 0.0, ahead)
+        state.gate_m[rows[held]] = np.minimum(state.gate_m[rows[held]], gate[held])
 
 
 def _going(state: VehicleState, rows: Ints, ways: tuple[int, ...]) -> Ints:

@@ -21,8 +21,9 @@ Floats = NDArray[np.float64]
 
 _CYCLIST_OUT_M = 0.78
 """Cyclists keep this far to the right of the outer lane's middle."""
-_WIDE_M, _WIDER_M2, _BEND_M = 0.6, 9.0, 10.0
-"""How far long vehicles keep out of bends at most, by how much for a curvature, felt over so many metres."""
+_WIDE_M, _WIDER_M2, _BEND_M, _TIGHT = 0.6, 14.0, 10.0, 1.0 / 45.0
+"""How far long vehicles keep out of bends at most, by how much for a curvature, felt over so
+many metres; from which on: beside gentler ones there are bays."""
 _SWAY_M, _SWAY_WAVE_M = 0.08, 23.0
 
 
@@ -75,7 +76,7 @@ class WayMaker:
         loop = self._plan.loop
         s = np.linspace(0.0, loop.length_m, int(loop.length_m), endpoint=False)
         bend = np.abs(loop.heading(s + _BEND_M) - loop.heading(s - _BEND_M)) / (2.0 * _BEND_M)
-        room: Floats = np.minimum(_WIDE_M, _WIDER_M2 * bend) * (-1.0 if track < 2 else 1.0)
+        room: Floats = np.minimum(_WIDE_M, _WIDER_M2 * np.maximum(bend - _TIGHT, 0.0)) * (-1.0 if track < 2 else 1.0)
         return room
 
     def _on_loop(

@@ -15,10 +15,10 @@ from services.simulator.worlds.town.traffic.state import VehicleState
 Ints = NDArray[np.intp]
 
 _PATIENCE_S = 4.0
-_CAMERA_REST_S = 40.0
+_CAMERA_REST_S = 44.0
 """The camera's car is not stopped again sooner than this after it could go on."""
 _CAMERA_NEAR_M = 70.0
-_FLOW_S = 34.0
+_FLOW_S = 40.0
 """Least time between two reds."""
 _LIGHT_TRAFFIC = 0.15
 """Below this there are no lights: people wait for gaps."""
@@ -37,7 +37,7 @@ class Zebra:
         self.site = Site(s - ZEBRA_HALF_LENGTH_M, s + ZEBRA_HALF_LENGTH_M, vehicles)
         self._people = [crosser for crosser in crossers if crosser.zebra == number]
         self._has_light = traffic >= _LIGHT_TRAFFIC
-        self._tempting, self._tempted = 0.4 + 0.6 * traffic, False
+        self._tempting, self._tempted = 0.5 + 0.2 * traffic, False
         self._rng = np.random.default_rng([seed, 49, number])
 
     def step(self, state: VehicleState, rows: Ints, now_s: float, camera_free_s: float) -> None:
