@@ -44,7 +44,8 @@ def main() -> None:
     try:
         app(prog_name="kinemap")
     except KinemapError as error:
-        print(f"kinemap: error: {error}", file=sys.stderr)
+        # One line, whatever a file's name holds.
+        print(f"kinemap: error: {' '.join(str(error).splitlines())}", file=sys.stderr)
         sys.exit(error.exit_code)
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)

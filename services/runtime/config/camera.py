@@ -26,7 +26,9 @@ class CameraConfig(BaseModel):
     rectify: bool = Field(True, description="rectify a stereo pair that is not (EuRoC); without, left images alone")
     depth: bool = Field(True, description="publish depth too where the input has it")
     topic: str | None = Field(None, description="image topic of a bag; the only one there is when not given")
-    depth_topic: str | None = Field(None, description="depth image topic of a bag; none when not given")
+    depth_topic: str | None = Field(
+        None, description="depth image topic of a bag; the only one of the images' size and frame when not given"
+    )
     info_topic: str | None = Field(
         None, description="camera info or calibration topic of a bag; the image topic's when not given"
     )
