@@ -54,7 +54,7 @@ class TrafficSimulation:
             state.locate()
             rows = state.rows()
             self._speeds.append((rows, state.speed_m_s[rows].copy()))
-            if state.speed_m_s[0] < _STANDS_M_S and state.gate_m[0] < 40.0:
+            if state.speed_m_s[0] < _STANDS_M_S:
                 self._camera_free_s = now_s
             self._advance(number)
         return self._by_vehicle()

@@ -41,7 +41,7 @@ class Zebra:
         self._rng = np.random.default_rng([seed, 49, number])
 
     def step(self, state: VehicleState, rows: Ints, now_s: float, camera_free_s: float) -> None:
-        """Open, close, let people cross. camera_free_s: since when the camera's car has not stood at a line."""
+        """Open, close, let people cross. camera_free_s: since when the camera's car has not stood."""
         site = self.site
         if site.state is SiteState.OPEN:
             self._see_camera_coming(state, now_s, camera_free_s)
