@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.records import MotionState
+from services.formats.point_cloud import first_in_voxels
 from services.simulator.frame import SimulatedFrame
 
 VOXEL_M = 0.1
@@ -53,13 +54,7 @@ def thinned(clouds: Iterable[NDArray[np.void]]) -> NDArray[np.void]:
     """The first point in every voxel of `VOXEL_M` and state, in the order in which they came."""
     points = np.concatenate([*clouds, np.empty(0, POINT)])
     place = np.stack([points[name] for name in "xyz"], axis=1)
-    voxel = np.floor(place / np.float32(VOXEL_M)).astype(np.int64)
-    if len(points):
-        voxel -= voxel.min(axis=0)
-    size = voxel.max(axis=0, initial=0) + 1
-    key = ((voxel[:, 0] * size[1] + voxel[:, 1]) * size[2] + voxel[:, 2]) * len(MotionState) + points["state"]
-    _, first = np.unique(key, return_index=True)
-    return points[np.sort(first)]
+    return points[first_in_voxels(place, points["state"], VOXEL_M)]
 
 
 def write_ply(path: Path, points: NDArray[np.void], frame_note: str) -> None:
