@@ -15,10 +15,10 @@ Lens = Literal["pinhole", "radial", "fisheye"]
 Light = Literal["noon", "low_sun", "overcast", "dusk"]
 
 MIN_DRIVE_M = 256.0
+MAX_DRIVE_M = 20_000.0
 
 _OWN_SPEED_M_S: dict[WorldName, float] = {"street": 8.0, "town": 8.0, "corridor": 1.2}
 _MAX_FRAMES = 20_000
-_MAX_DRIVE_M = 20_000.0
 _MAX_SIDE_PX = 4096
 _ACTORS = (0, 500)
 _SHARE = (0.0, 1.0)
@@ -32,7 +32,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "speed_m_s": (0.3, 15.0),
     "camera_height_m": (0.3, 4.0),
     "lateral_offset_m": (-1.5, 1.5),
-    "start_m": (0.0, _MAX_DRIVE_M),
+    "start_m": (0.0, MAX_DRIVE_M),
     "threads": (0, 256),
     "loop_m": (500.0, 3000.0),
     "max_slope": (0.0, 0.12),
@@ -57,6 +57,14 @@ _RANGES: dict[str, tuple[float, float]] = {
     "blackout_frames": (0, _MAX_FRAMES),
 }
 _COEFFICIENTS = {"pinhole": 0, "radial": 5, "fisheye": 4}
+_LARGEST_COEFFICIENT = 1e3
+_OF_WORLDS: dict[str, tuple[WorldName, ...]] = {
+    **dict.fromkeys(("loop_m", "max_slope", "parked"), ("town",)),
+    **dict.fromkeys(("start_m", "traffic"), ("town", "corridor")),
+    **dict.fromkeys(("empty_start_m", "parked_cars", "oncoming_cars", "leading_cars", "crossing_cars"), ("street",)),
+    **dict.fromkeys(("starting_cars", "walking_people", "crossing_people", "standing_people"), ("street",)),
+}
+"""Options that mean nothing elsewhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +156,8 @@ class DriveOptions:
             object.__setattr__(self, "speed_m_s", _OWN_SPEED_M_S[self.world])
         for name, (low, high) in _RANGES.items():
             self._expect(name, low, high)
+        for field in fields(self):
+            self._expect_meant(field.name, field.default)
         self._expect("fx_px", 0.2 * self.width, 10.0 * self.width)
         self._expect("empty_start_m", 0.0, 0.5 * self.drive_length_m)
         if self.world == "street":
@@ -156,8 +166,14 @@ class DriveOptions:
         if len(self.distortion) != wanted:
             expected = f"{wanted} numbers for the lens {self.lens!r}"
             raise InputError(f"simulator distortion={self.distortion!r}: expected {expected}")
-        if self.frames / self.rate_hz * self.speed_m_s > _MAX_DRIVE_M:
-            raise InputError(f"simulator frames={self.frames}: expected a drive of at most {_MAX_DRIVE_M:g} m")
+        if any(abs(value) > _LARGEST_COEFFICIENT for value in self.distortion):
+            expected = f"coefficients within {_LARGEST_COEFFICIENT:g} of zero"
+            raise InputError(f"simulator distortion={self.distortion!r}: expected {expected}")
+        if self.blackout_frames and self.blackout_start >= self.frames:
+            expected = f"a blackout that begins before frame {self.frames}, the end"
+            raise InputError(f"simulator blackout_start={self.blackout_start}: expected {expected}")
+        if self.frames / self.rate_hz * self.speed_m_s > MAX_DRIVE_M:
+            raise InputError(f"simulator frames={self.frames}: expected a drive of at most {MAX_DRIVE_M:g} m")
 
     def _expect_type(self, name: str, hint: object) -> None:
         value = getattr(self, name)
@@ -182,7 +198,14 @@ class DriveOptions:
     def _expect(self, name: str, low: float, high: float) -> None:
         value = getattr(self, name)
         if value is not None and not low <= value <= high:
-            raise InputError(f"simulator {name}={value!r}: expected {low:g} to {high:g}")
+            raise InputError(f"simulator {name}={value!r}: expected {low:.10g} to {high:.10g}")
+
+    def _expect_meant(self, name: str, default: object) -> None:
+        """An option of another world is refused rather than passed over in silence."""
+        value, worlds = getattr(self, name), _OF_WORLDS.get(name, (self.world,))
+        if value != default and self.world not in worlds:
+            expected = f"this option in the world {' or '.join(worlds)} only, not in the {self.world}"
+            raise InputError(f"simulator {name}={value!r}: expected {expected}")
 
     @property
     def seed_of_traffic(self) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
-from services.simulator.options import DriveOptions
+from services.simulator.options import MAX_DRIVE_M, DriveOptions
 
 _MISSING, _FROZEN = 101, 102
 _MAX_TIMES = 20_000
@@ -17,7 +17,7 @@ class Timeline:
     """Frame numbers and what becomes of them; a longer drive begins like a shorter one.
 
     Raises:
-        InputError: so many frames are missing that the drive has no end.
+        InputError: so many frames are missing that the drive has no end, or a farther one than worlds reach.
     """
 
     def __init__(self, options: DriveOptions) -> None:
@@ -54,7 +54,9 @@ def _slots_that_come(options: DriveOptions) -> NDArray[np.int64]:
     missing = np.random.default_rng([options.seed, _MISSING]).random(_MAX_TIMES) < options.missing_frames
     missing[0] = False
     slots = np.flatnonzero(~missing)[: options.frames]
+    given = f"frames={options.frames} with missing_frames={options.missing_frames}"
+    if (int(slots[-1]) + 1) / options.rate_hz * options.speed_m_s > MAX_DRIVE_M:
+        raise InputError(f"simulator {given}: expected a drive of at most {MAX_DRIVE_M:g} m")
     if len(slots) < options.frames:
-        given = f"frames={options.frames} with missing_frames={options.missing_frames}"
         raise InputError(f"simulator {given}: expected at most {_MAX_TIMES} frame times")
     return slots
