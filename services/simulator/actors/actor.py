@@ -84,10 +84,11 @@ class Actor:
 
     def _on_axles(self, gone: float, speed: float) -> ActorState:
         base, near = self.half_base_m, _TANGENT_M
-        point = self.path.point(gone + np.array([-base - near, -base + near, base - near, base + near]))
-        rear, front = 0.5 * (point[0] + point[1]), 0.5 * (point[2] + point[3])
-        pose = axle_pose(rear, front)
-        velocity = (point[1] - point[0] + point[3] - point[2]) * (speed / (4.0 * near))
+        around = np.array([-_HALF_STEP_M, -near, near, _HALF_STEP_M])
+        point = self.path.point(gone + np.concatenate([around - base, around + base]))
+        pose = axle_pose(0.5 * (point[1] + point[2]), 0.5 * (point[5] + point[6]))
+        # Over more of the way than the pose: paths of junctions join to within centimetres only.
+        velocity = (point[3] - point[0] + point[7] - point[4]) * (speed / (4.0 * _HALF_STEP_M))
         centre = pose[:3, 3] + 0.5 * self.size_m[2] * pose[:3, 2]
         heading = float(np.arctan2(pose[1, 0], pose[0, 0]))
         moving = float(np.linalg.norm(velocity)) >= MOVING_M_S

@@ -10,12 +10,19 @@ from services.simulator.actors.actor import Actor
 from services.simulator.actors.motion import SpeedProfile
 from services.simulator.options import DriveOptions
 from services.simulator.shapes.vehicle_styles import SALOON
-from services.simulator.worlds.town.paths import StraightPath
+from services.simulator.worlds.town.paths import ChainPath, StraightPath
 from services.simulator.worlds.town.traffic.looks import Wardrobe
 from tests.unit.simulator.traffic_scene import planned, town
 
 OPTIONS = DriveOptions(world="town", seed=2, traffic=0.5, max_slope=0.1)
 TIMES_S = (0.37, 8.23, 19.91, 27.44)
+
+
+class Slope:
+    """A plane that rises along x."""
+
+    def height_m(self, xy: np.ndarray) -> np.ndarray:
+        return 0.08 * xy[..., 0]
 
 
 def test_velocity_is_the_derivative_of_position() -> None:
@@ -39,6 +46,15 @@ def test_velocity_is_the_derivative_of_position() -> None:
     assert climbed > 0.2
 
 
+def test_a_step_between_two_paths_does_not_show_as_speed() -> None:
+    """Ways of junctions join to within centimetres."""
+    looks = Wardrobe(defaultdict(int)).vehicle(SALOON, 1)
+    parts = [StraightPath(np.array([x_m, 0.0]), 0.0, Slope()) for x_m in (0.0, 10.03)]
+    actor = Actor(1, path=ChainPath(parts, [0.0, 10.0], np.inf), speed=SpeedProfile([(0.0, 8.0)]), **looks)
+    speeds = [np.linalg.norm(actor.at(gone_m / 8.0).velocity_m_s[:2]) for gone_m in np.arange(7.0, 13.0, 0.01)]
+    assert speeds == pytest.approx([8.0] * len(speeds), rel=0.06)
+
+
 def test_wheels_stand_on_the_ground_and_cars_pitch_with_the_slope() -> None:
     actors, _ = planned(OPTIONS)
     ground = town(OPTIONS.seed).ground
@@ -60,10 +76,6 @@ def test_wheels_stand_on_the_ground_and_cars_pitch_with_the_slope() -> None:
 
 
 def test_a_car_on_a_plane_slope_has_exactly_its_pitch() -> None:
-    class Slope:
-        def height_m(self, xy: np.ndarray) -> np.ndarray:
-            return 0.08 * xy[..., 0]
-
     looks = Wardrobe(defaultdict(int)).vehicle(SALOON, 1)
     speed = SpeedProfile([(0.0, 5.0), (1.0, 5.0)])
     actor = Actor(1, path=StraightPath(np.zeros(2), 0.0, Slope()), speed=speed, **looks)
