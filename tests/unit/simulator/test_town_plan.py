@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from services.simulator.options import DriveOptions
-from services.simulator.worlds.town.line import SampledLine, line_through
+from services.simulator.worlds.line import SampledLine, line_through
 from services.simulator.worlds.town.loop import MIN_RADIUS_M, town_loop
 from services.simulator.worlds.town.profile import (
     CROSSING_CLEAR_M,

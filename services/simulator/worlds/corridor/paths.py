@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.worlds.town.line import SampledLine
+from services.simulator.worlds.line import SampledLine
 
 Floats = NDArray[np.float64]
 

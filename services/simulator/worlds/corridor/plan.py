@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.placement import planar_pose
-from services.simulator.worlds.town.line import SampledLine
+from services.simulator.worlds.line import SampledLine
 
 Floats = NDArray[np.float64]
 

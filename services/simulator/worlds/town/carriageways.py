@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.worlds.town.line import SampledLine
+from services.simulator.worlds.line import SampledLine
 from services.simulator.worlds.town.profile import (
     CORNER_RADIUS_M,
     KERB_M,

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.simulator.worlds.line import SampledLine
 from services.simulator.worlds.town.blocks import town_outline
-from services.simulator.worlds.town.line import SampledLine
 from services.simulator.worlds.town.profile import LANE_CENTRES_M
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.worlds.town.line import SampledLine, line_through
+from services.simulator.worlds.line import SampledLine, line_through
 from services.simulator.worlds.town.loop import Loop
 
 Floats = NDArray[np.float64]

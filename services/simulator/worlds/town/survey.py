@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.options import DriveOptions
+from services.simulator.worlds.line import SampledLine
 from services.simulator.worlds.town.carriageways import DistanceMap
 from services.simulator.worlds.town.ground import Hills, TownGround
-from services.simulator.worlds.town.line import SampledLine
 from services.simulator.worlds.town.loop import Loop, town_loop
 from services.simulator.worlds.town.plan import Crossing, TownPlan
 from services.simulator.worlds.town.profile import CROSSING_CLEAR_M

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.shapes.meshes import Mesh, merged, surface
+from services.simulator.worlds.line import SampledLine
 from services.simulator.worlds.town.carriageways import DistanceMap
 from services.simulator.worlds.town.layout.drape import Drape
-from services.simulator.worlds.town.line import SampledLine
 from services.simulator.worlds.town.profile import (
     CORNER_RADIUS_M,
     KERB_HEIGHT_M,
