@@ -16,7 +16,6 @@ Floats = NDArray[np.float64]
 Floats32 = NDArray[np.float32]
 
 _REACH_M = 0.8
-_DARKEST = 0.75
 _RANGE_M = 60.0
 _GROUND_M = 0.25
 """Surfaces no higher than this above the feet count as ground."""
@@ -32,10 +31,10 @@ class Footprint:
 
 
 class ContactShade:
-    """Darkens the ground round footprints in the image of one camera."""
+    """Darkens the ground round footprints in the image of one camera, by the share `darkest` under a body."""
 
-    def __init__(self, camera: Camera) -> None:
-        self._camera = camera
+    def __init__(self, camera: Camera, darkest: float) -> None:
+        self._camera, self._darkest = camera, np.float32(darkest)
         self._x, self._y = camera.normalised()
 
     def darken(
@@ -68,7 +67,7 @@ class ContactShade:
             outside_y = np.maximum(np.abs(across) - np.float32(0.5 * footprint.width_m - 0.1), 0.0)
             near = 1.0 - np.sqrt(outside_x * outside_x + outside_y * outside_y) * np.float32(1.0 / _REACH_M)
             near = np.where(on_ground[window] & (height < _GROUND_M), np.maximum(near, 0.0), 0.0)
-            shade = np.float32(_DARKEST) * near * near * (np.float32(3.0) - np.float32(2.0) * near)
+            shade = self._darkest * near * near * (np.float32(3.0) - np.float32(2.0) * near)
             colour[window] *= (np.float32(1.0) - shade)[..., None]
 
 

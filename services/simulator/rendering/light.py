@@ -18,7 +18,8 @@ class Light:
 
     to_sun: direction in the world frame, of any length. sun: where it falls straight onto a surface. sky, ground: what
     comes from above and from below. haze_length_m: where 63 % of a colour has become the haze's. clouds: share of the
-    sky that is its texture; the rest goes from `horizon` to `zenith`. glow: of the sky round the sun.
+    sky that is its texture; the rest goes from `horizon` to `zenith`. glow: of the sky round the sun. contact_shade:
+    share of the light that is missing on the ground under somebody.
     """
 
     to_sun: Colour
@@ -31,6 +32,7 @@ class Light:
     horizon: Colour = (0.0, 0.0, 0.0)
     zenith: Colour = (0.0, 0.0, 0.0)
     glow: Colour = (0.0, 0.0, 0.0)
+    contact_shade: float = 0.75
 
     @property
     def direction_to_sun(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -44,7 +44,7 @@ class Renderer:
         self._shader, self._bands = shader, bands
         self._shadows = shadows and shader.light.casts_shadows
         self._x, self._y = camera.normalised()
-        self._contact = ContactShade(camera)
+        self._contact = ContactShade(camera, shader.light.contact_shade)
 
     def sight(self, world_from_camera: Floats, moving: Surfaces | None) -> Sight:
         """What a pose sees."""

@@ -20,8 +20,9 @@ LAMPS = Light(
     ground=(0.74, 0.78, 0.82),
     haze=(226.0, 226.0, 226.0),
     haze_length_m=400.0,
+    contact_shade=0.4,
 )
-"""Rows of lamps under a bright ceiling: from above mostly, and much of it thrown back by the floor."""
+"""Rows of lamps under a bright ceiling: from above mostly, and much of it thrown back by the floor, also under feet."""
 
 
 def build_corridor(options: DriveOptions) -> World:
