@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions
 from services.simulator.painting.storeys import STYLES, paint_plain, paint_storeys
 from services.simulator.painting.town_library import paint_town_library
@@ -19,7 +18,7 @@ from services.simulator.worlds.town.layout.site import Site
 from services.simulator.worlds.town.layout.town import town_mesh
 from services.simulator.worlds.town.profile import WALKWAY_M
 from services.simulator.worlds.town.survey import TownSurvey, survey_town
-from services.simulator.worlds.town.traffic.planner import plan_traffic
+from tests.unit.simulator.traffic_scene import planned
 
 TEXTURE: dict[str, int] = defaultdict(int)
 HEIGHTS_M = (0.45, 1.0, 1.8)
@@ -130,19 +129,11 @@ def test_textures_fit_the_atlas_and_follow_from_the_seed() -> None:
     assert differing > 0.9 * len(first)
 
 
-def test_texture_feeds_orb_as_real_images_do() -> None:
-    town = Drive(DriveOptions(world="town", seed=5, width=1242, height=375, frames=600, traffic=0.0, threads=0))
-    orb = cv2.ORB_create(nfeatures=2000)
-    for index in (0, 220, 450):
-        image = cv2.cvtColor(town.render(index).image, cv2.COLOR_BGR2GRAY)
-        assert len(orb.detect(image, None)) >= 1500
-
-
 def test_nobody_runs_into_what_stands() -> None:
     town, mesh = built(7)
     standing = obstacles(town, mesh)
     tree = cKDTree(standing)
-    actors, _ = plan_traffic(DriveOptions(world="town", seed=7, frames=300, traffic=1.0), town.plan, TEXTURE)
+    actors, _ = planned(DriveOptions(world="town", seed=7, traffic=0.6, parked=1.0))
     assert len(actors) > 100
     for actor in actors:
         half = 0.5 * np.array(actor.size_m[:2])

@@ -134,7 +134,7 @@ class Furniture:
         if rng.random() < 0.45 or frontage.last_m - frontage.first_m < 40.0:
             return []
         s = float(rng.uniform(frontage.first_m + 15.0, frontage.last_m - 15.0))
-        pose = self._pose(frontage, s, frontage.back_m - frontage.kerb_m + 0.2)
+        pose = self._pose(frontage, s, frontage.back_m - frontage.kerb_m + 0.35)
         beside = self._pose(frontage, s, frontage.back_m - frontage.kerb_m + 1.3)
         if not self._clear(pose, 3.5) or not self._site.take(beside, (5.0, 1.4)):
             return []
