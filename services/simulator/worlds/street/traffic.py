@@ -80,10 +80,8 @@ class TrafficPlanner:
             looks = self._person if name.endswith("people") else self._car
             for number in range(wanted):
                 if not self._admit(draw, looks(len(self._actors) + 1), number):
-                    raise InputError(
-                        f"simulator {name}={wanted}: expected at most {number} on this street "
-                        f"(seed {options.seed_of_traffic})"
-                    )
+                    where = f"(seed {options.seed_of_traffic}, lateral_offset_m={options.lateral_offset_m})"
+                    raise InputError(f"simulator {name}={wanted}: expected at most {number} on this street {where}")
         return self._actors
 
     def _admit(self, draw: Callable[[int], Route], looks: Looks, number: int) -> bool:
