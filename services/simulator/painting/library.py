@@ -8,9 +8,12 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 
-from services.simulator.painting import facades, surfaces, vehicle_textures
+from services.simulator.painting import surfaces
+from services.simulator.painting.buildings import facades
 from services.simulator.painting.surfaces import Image, coloured, noise, to_image
-from services.simulator.shapes import people, vehicles
+from services.simulator.painting.vehicles import vehicle_textures
+from services.simulator.shapes import people
+from services.simulator.shapes.vehicles import cars
 
 SIGN_COUNT = 4
 ROOFS = ("roof_red", "roof_brown", "roof_grey")
@@ -58,7 +61,7 @@ def _paint_surfaces(seed: int) -> dict[str, Image]:
 def _paint_things(seed: int) -> dict[str, Image]:
     """Vehicles, clothes and traffic signs."""
     textures = {}
-    for body in vehicles.STYLES:
+    for body in cars.STYLES:
         name = f"side_{body.name}"
         textures[name] = vehicle_textures.paint_side(_generator(seed, name), body)
     textures |= vehicle_textures.paint_parts(_generator(seed, "car parts"))

@@ -9,9 +9,10 @@ from functools import partial
 import cv2
 import numpy as np
 
-from services.simulator.painting import shopfronts, storeys, town_surfaces
+from services.simulator.painting import town_surfaces
+from services.simulator.painting.buildings import shopfronts, storeys
+from services.simulator.painting.buildings.shopfronts import BOARDS, MURALS, POSTERS, SHOPS
 from services.simulator.painting.library import paint_shared
-from services.simulator.painting.shopfronts import BOARDS, MURALS, POSTERS, SHOPS
 from services.simulator.painting.surfaces import Image, coloured, leaves, noise, roof_tiles, speckle, to_image
 from services.simulator.painting.traffic_library import paint_traffic
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
+from services.simulator.painting.buildings.windows import fill, paint_glass
 from services.simulator.painting.surfaces import Colour, Image, coloured, noise, to_image
-from services.simulator.painting.windows import fill, paint_glass
 
 
 def setts(rng: np.random.Generator, colour: Colour, size: int = 512) -> Image:

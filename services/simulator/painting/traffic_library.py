@@ -8,12 +8,12 @@ from functools import partial
 
 import numpy as np
 
-from services.simulator.painting import large_vehicle_textures as large
-from services.simulator.painting import vehicle_textures
 from services.simulator.painting.clothes import cloth_painters
 from services.simulator.painting.surfaces import Image
-from services.simulator.shapes.large_vehicles import BOX_ADVERTS, BUS_LIVERIES, FIRMS
-from services.simulator.shapes.vehicle_outlines import BODIES
+from services.simulator.painting.vehicles import large_vehicle_textures as large
+from services.simulator.painting.vehicles import vehicle_textures
+from services.simulator.shapes.vehicles.large_vehicles import BOX_ADVERTS, BUS_LIVERIES, FIRMS
+from services.simulator.shapes.vehicles.outlines import BODIES
 
 
 def paint_traffic(seed: int) -> dict[str, Image]:

@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from services.simulator.options import DriveOptions
-from services.simulator.painting.storeys import STYLES, paint_plain, paint_storeys
+from services.simulator.painting.buildings.storeys import STYLES, paint_plain, paint_storeys
 from services.simulator.painting.town_library import paint_town_library
 from services.simulator.shapes.meshes import Mesh
 from services.simulator.worlds.town.layout.character import draw_characters

@@ -9,7 +9,7 @@ import pytest
 from services.simulator.actors.actor import Actor
 from services.simulator.actors.motion import SpeedProfile
 from services.simulator.options import DriveOptions
-from services.simulator.shapes.vehicle_styles import SALOON
+from services.simulator.shapes.vehicles.styles import SALOON
 from services.simulator.worlds.town.paths import ChainPath, StraightPath
 from services.simulator.worlds.town.traffic.looks import Wardrobe
 from tests.unit.simulator.traffic_scene import planned, town

@@ -6,7 +6,7 @@ import pytest
 
 from services.simulator.painting.town_library import paint_town_library
 from services.simulator.shapes.townspeople import draw_clothes
-from services.simulator.shapes.vehicle_styles import BICYCLE, CARS, KINDS, LARGE, VehicleStyle
+from services.simulator.shapes.vehicles.styles import BICYCLE, CARS, KINDS, LARGE, VehicleStyle
 from services.simulator.worlds.town.traffic.looks import Wardrobe
 
 

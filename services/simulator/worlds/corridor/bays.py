@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from services.simulator.actors.placement import planar_pose
 from services.simulator.painting.indoor import SCREEN_COUNT
-from services.simulator.shapes import furniture
 from services.simulator.shapes.meshes import Mesh
+from services.simulator.shapes.things import furniture
 from services.simulator.worlds.corridor.plan import Bay
 
 Floats = NDArray[np.float64]

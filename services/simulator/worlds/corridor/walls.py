@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from services.simulator.actors.placement import planar_pose
 from services.simulator.painting.indoor import DOOR_COUNT, POSTER_COUNT
-from services.simulator.shapes import furniture
 from services.simulator.shapes.meshes import Mesh, box, merged, quads
+from services.simulator.shapes.things import furniture
 from services.simulator.worlds.corridor.plan import CEILING_M
 
 Floats = NDArray[np.float64]

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting import facades
+from services.simulator.painting.buildings import facades
 from services.simulator.painting.library import ROOFS, SIGN_COUNT
-from services.simulator.shapes import greenery, houses
+from services.simulator.shapes.buildings import houses
 from services.simulator.shapes.meshes import Mesh, merged, quads, surface
+from services.simulator.shapes.things import greenery
 from services.simulator.worlds.street.road import (
     AHEAD_M,
     BEHIND_M,

@@ -13,8 +13,9 @@ from services.runtime.errors import InputError
 from services.simulator.actors.actor import MOVING_M_S, Actor
 from services.simulator.actors.motion import Path, SpeedProfile
 from services.simulator.options import DriveOptions
-from services.simulator.shapes import people, vehicles
+from services.simulator.shapes import people
 from services.simulator.shapes.meshes import Mesh, Tint
+from services.simulator.shapes.vehicles import cars
 from services.simulator.worlds.street.ego import EgoTrajectory
 from services.simulator.worlds.street.paths import AcrossPath, LanePath
 from services.simulator.worlds.street.road import BAY_CENTRE_M, LANE_CENTRE_M, Road
@@ -51,7 +52,7 @@ class TrafficPlanner:
         self._options, self._road, self._ego, self._texture = options, road, ego, texture
         self._rng = np.random.default_rng([options.seed_of_traffic, 4])
         self._actors: list[Actor] = []
-        self._car_meshes: dict[tuple[vehicles.BodyStyle, Tint], Mesh] = {}
+        self._car_meshes: dict[tuple[cars.BodyStyle, Tint], Mesh] = {}
         duration_s = road.length_m / options.speed_m_s
         self._times = np.arange(0.0, duration_s + 2.0, _TIME_STEP_S)
         self._discs: list[Floats] = [self._ego_discs()]
@@ -122,10 +123,10 @@ class TrafficPlanner:
 
     def _car(self, instance_id: int) -> Looks:
         rng = np.random.default_rng([self._options.seed_of_traffic, 5, instance_id])
-        style = vehicles.STYLES[int(rng.choice(3, p=[0.42, 0.42, 0.16]))]
-        paint = vehicles.PAINTS[int(rng.integers(0, len(vehicles.PAINTS)))]
+        style = cars.STYLES[int(rng.choice(3, p=[0.42, 0.42, 0.16]))]
+        paint = cars.PAINTS[int(rng.integers(0, len(cars.PAINTS)))]
         if (style, paint) not in self._car_meshes:
-            self._car_meshes[style, paint] = vehicles.car_mesh(style, paint, self._texture)
+            self._car_meshes[style, paint] = cars.car_mesh(style, paint, self._texture)
         half = 0.5 * style.size_m[0] - 0.75
         return Looks(
             category="car",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from services.simulator.painting.storeys import STYLES
+from services.simulator.painting.buildings.storeys import STYLES
 from services.simulator.painting.town_library import PAVINGS, TOWN_ROOFS
 
 

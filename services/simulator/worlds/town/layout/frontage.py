@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.shopfronts import MURALS, SHOPS
-from services.simulator.shapes import street_things, town_houses, trees
+from services.simulator.painting.buildings.shopfronts import MURALS, SHOPS
+from services.simulator.shapes.buildings import town_houses
+from services.simulator.shapes.buildings.walls import BAY_M, Wall
 from services.simulator.shapes.meshes import Mesh, Tint, quads
-from services.simulator.shapes.walls import BAY_M, Wall
+from services.simulator.shapes.things import street_things, trees
 from services.simulator.worlds.town.layout.character import MIXES, Character
 from services.simulator.worlds.town.layout.site import Site
 from services.simulator.worlds.town.plan import Line

@@ -10,12 +10,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from services.simulator.painting.buildings.shopfronts import POSTERS
 from services.simulator.painting.library import SIGN_COUNT
-from services.simulator.painting.shopfronts import POSTERS
 from services.simulator.painting.town_library import TOWN_SIGNS
-from services.simulator.shapes import street_things, trees
-from services.simulator.shapes.greenery import bin_mesh
 from services.simulator.shapes.meshes import Mesh
+from services.simulator.shapes.things import street_things, trees
+from services.simulator.shapes.things.greenery import bin_mesh
 from services.simulator.worlds.town.carriageways import DistanceMap
 from services.simulator.worlds.town.layout.frontage import Frontage
 from services.simulator.worlds.town.layout.site import Site

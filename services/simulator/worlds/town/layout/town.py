@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.shapes import town_houses
+from services.simulator.shapes.buildings import town_houses
+from services.simulator.shapes.buildings.walls import BAY_M, Wall
 from services.simulator.shapes.meshes import Mesh, merged
-from services.simulator.shapes.walls import BAY_M, Wall
 from services.simulator.worlds.town.ground import sampling_m
 from services.simulator.worlds.town.layout.character import Character, draw_characters
 from services.simulator.worlds.town.layout.drape import Drape

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from services.simulator.shapes import landmarks, town_houses
+from services.simulator.shapes.buildings import landmarks, town_houses
 from services.simulator.shapes.meshes import Mesh
 from services.simulator.worlds.town.layout.frontage import Frontage
 from services.simulator.worlds.town.layout.site import Site

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.shapes.vehicle_styles import BICYCLE, KINDS, VehicleStyle
+from services.simulator.shapes.vehicles.styles import BICYCLE, KINDS, VehicleStyle
 from services.simulator.worlds.town.traffic.car_following import Drivers
 
 Floats = NDArray[np.float64]

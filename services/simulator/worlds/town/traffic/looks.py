@@ -8,8 +8,11 @@ from typing import TypedDict
 
 import numpy as np
 
-from services.simulator.shapes.cyclists import bicycle_mesh, rider_mesh
-from services.simulator.shapes.large_vehicles import (
+from services.simulator.shapes.meshes import Mesh, Tint
+from services.simulator.shapes.people import Gait
+from services.simulator.shapes.townspeople import draw_clothes, townsperson_mesh
+from services.simulator.shapes.vehicles.cyclists import bicycle_mesh, rider_mesh
+from services.simulator.shapes.vehicles.large_vehicles import (
     BOX_ADVERTS,
     BUS_LIVERIES,
     CARGOES,
@@ -19,11 +22,8 @@ from services.simulator.shapes.large_vehicles import (
     delivery_mesh,
     flatbed_mesh,
 )
-from services.simulator.shapes.meshes import Mesh, Tint
-from services.simulator.shapes.people import Gait
-from services.simulator.shapes.town_cars import PAINTS, town_car_mesh
-from services.simulator.shapes.townspeople import draw_clothes, townsperson_mesh
-from services.simulator.shapes.vehicle_styles import BICYCLE, BOX_LORRY, BUS, DELIVERY, FLATBED, LARGE, VehicleStyle
+from services.simulator.shapes.vehicles.styles import BICYCLE, BOX_LORRY, BUS, DELIVERY, FLATBED, LARGE, VehicleStyle
+from services.simulator.shapes.vehicles.town_cars import PAINTS, town_car_mesh
 
 _LIGHT = 0.35
 """Delivery vans are light, so that their names can be read."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from services.simulator.actors.actor import Actor
 from services.simulator.actors.motion import Path, SpeedProfile
 from services.simulator.options import DriveOptions
-from services.simulator.shapes.vehicle_styles import BICYCLE
+from services.simulator.shapes.vehicles.styles import BICYCLE
 from services.simulator.worlds.town.paths import LoopPath, StraightPath, Sway
 from services.simulator.worlds.town.plan import TownPlan
 from services.simulator.worlds.town.profile import LANE_CENTRES_M

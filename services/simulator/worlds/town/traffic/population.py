@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.options import DriveOptions
-from services.simulator.shapes.vehicle_styles import BUS
+from services.simulator.shapes.vehicles.styles import BUS
 from services.simulator.worlds.town.traffic.fleet import Vehicle, camera_car, draw_vehicle
 from services.simulator.worlds.town.traffic.tracks import LOOP_TRACKS, Tracks
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.motion import Path
-from services.simulator.shapes.vehicle_styles import BICYCLE
+from services.simulator.shapes.vehicles.styles import BICYCLE
 from services.simulator.worlds.town.paths import ChainPath, LoopPath, PointsPath, Shift, Sway
 from services.simulator.worlds.town.plan import TownPlan
 from services.simulator.worlds.town.profile import LANE_CENTRES_M

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.shopfronts import SHOP_M
-from services.simulator.painting.storeys import BAYS, PLAIN_M, STOREY_M, TILE_M
+from services.simulator.painting.buildings.shopfronts import SHOP_M
+from services.simulator.painting.buildings.storeys import BAYS, PLAIN_M, STOREY_M, TILE_M
 from services.simulator.shapes.meshes import WHITE, Mesh, Tint, box, merged, quads, stretch
 
 Floats = NDArray[np.float64]

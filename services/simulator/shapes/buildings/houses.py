@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from services.simulator.painting.facades import FACADE_WIDTH_M, FacadeStyle
+from services.simulator.painting.buildings.facades import FACADE_WIDTH_M, FacadeStyle
 from services.simulator.shapes.meshes import Mesh, Tint, box, merged, quads
 
 _EAVES_M = 0.45

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from services.simulator.painting.buildings.windows import fill, paint_door, paint_window, toned
 from services.simulator.painting.surfaces import (
     Colour,
     Floats32,
@@ -20,7 +21,6 @@ from services.simulator.painting.surfaces import (
     plaster,
     to_image,
 )
-from services.simulator.painting.windows import fill, paint_door, paint_window, toned
 
 STOREY_M = 3.0
 TILE_M = 12.0

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The town's cars: bodies by `vehicle_outlines` and what stands out of them. Object frame as in `vehicles`."""
+"""The town's cars: bodies by `outlines` and what stands out of them. Object frame as in `cars`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from services.simulator.shapes.meshes import Mesh, Tint, box, merged
-from services.simulator.shapes.vehicle_outlines import BODIES
-from services.simulator.shapes.vehicles import car_mesh
+from services.simulator.shapes.vehicles.cars import car_mesh
+from services.simulator.shapes.vehicles.outlines import BODIES
 
 PAINTS: tuple[Tint, ...] = (
     (0.95, 0.95, 0.95),

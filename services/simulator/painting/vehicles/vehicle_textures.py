@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.painting.surfaces import Colour, Floats32, Image, coloured, noise, to_image
-from services.simulator.shapes.vehicles import BELT_M, SIDE_HEIGHT_M, SIDE_LENGTH_M, WHEEL_RADIUS_M, BodyStyle
+from services.simulator.shapes.vehicles.cars import BELT_M, SIDE_HEIGHT_M, SIDE_LENGTH_M, WHEEL_RADIUS_M, BodyStyle
 
 Floats = NDArray[np.float64]
 

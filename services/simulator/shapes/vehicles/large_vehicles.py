@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from services.simulator.shapes.meshes import WHITE, Mesh, Tint, blob, box, merged, tube
-from services.simulator.shapes.vehicle_parts import body, upright, wheels
+from services.simulator.shapes.vehicles.parts import body, upright, wheels
 
 BUS_LIVERIES, BOX_ADVERTS, FIRMS, CARGOES = 3, 4, 3, 3
 _DARK: Tint = (0.25, 0.25, 0.25)

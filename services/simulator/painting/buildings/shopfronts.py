@@ -6,8 +6,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
+from services.simulator.painting.buildings.windows import fill, paint_glass, toned
 from services.simulator.painting.surfaces import Colour, Image, coloured, noise, plaster, to_image
-from services.simulator.painting.windows import fill, paint_glass, toned
 
 SHOPS, BOARDS, POSTERS, MURALS = 9, 8, 10, 3
 """How many of each are painted for one town."""

@@ -8,11 +8,19 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.shopfronts import BOARDS, SHOP_M
-from services.simulator.painting.storeys import STOREY_M
-from services.simulator.shapes import roofs
+from services.simulator.painting.buildings.shopfronts import BOARDS, SHOP_M
+from services.simulator.painting.buildings.storeys import STOREY_M
+from services.simulator.shapes.buildings import roofs
+from services.simulator.shapes.buildings.walls import (
+    BAY_M,
+    FOUNDATION_M,
+    PLINTH_M,
+    Wall,
+    cornice_mesh,
+    height_m,
+    walls_mesh,
+)
 from services.simulator.shapes.meshes import Mesh, Tint, box, merged, quads, stretch
-from services.simulator.shapes.walls import BAY_M, FOUNDATION_M, PLINTH_M, Wall, cornice_mesh, height_m, walls_mesh
 
 Size = tuple[float, float]
 Textures = Mapping[str, int]

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from services.simulator.shapes.buildings.walls import Wall, gable_mesh
 from services.simulator.shapes.meshes import WHITE, Mesh, Tint, box, merged, quads, stretch
-from services.simulator.shapes.walls import Wall, gable_mesh
 
 _TILE_M = 4.0
 _OVERHANG_M = 0.4

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from services.simulator.shapes.vehicles import BodyStyle
+from services.simulator.shapes.vehicles.cars import BodyStyle
 
 BODIES = {
     body.name: body
