@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where things stand."""
+"""Where things stand, and how a camera sits on what carries it. Bases: x forward, y left, z up."""
 
 from __future__ import annotations
 
@@ -7,6 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+
+BASE_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""3x3; optical frames look along z, x to the right, y down."""
+
+
+def rotation_about(axis: int, angle_rad: float) -> Floats:
+    """Rotation matrix, 3x3, about x (0), y (1) or z (2), by the right hand."""
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    rotation = np.eye(3)
+    rotation[i, i] = rotation[j, j] = cos
+    rotation[i, j], rotation[j, i] = -sin, sin
+    return rotation
 
 
 def planar_pose(xy: Floats, heading: float) -> Floats:

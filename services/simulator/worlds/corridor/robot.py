@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.runtime.errors import InputError
+from services.simulator.actors.placement import BASE_FROM_OPTICAL, rotation_about
 from services.simulator.options import DriveOptions
 from services.simulator.worlds.corridor.plan import HALF_WIDTH_M, FloorPlan
 
@@ -14,7 +15,6 @@ Floats = NDArray[np.float64]
 
 MAX_OFFSET_M = 0.25
 MAX_SPEED_M_S = 3.0
-_BASE_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _IN_CORNERS = 0.5
 """Share of the speed that is left in a corner."""
 _HALF_LENGTH_M = 0.25
@@ -57,11 +57,8 @@ class RobotPath:
         rear, front = self._line.point(s + np.array([-_HALF_LENGTH_M, _HALF_LENGTH_M]), self._n_m)
         yaw = float(np.arctan2(*(front - rear)[::-1]))
         pitch = np.deg2rad(0.12) * np.sin(9.1 * t_s) + np.deg2rad(0.08) * np.sin(13.7 * t_s + 1.0)
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        about_z = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        about_y = np.array([[np.cos(pitch), 0.0, np.sin(pitch)], [0.0, 1.0, 0.0], [-np.sin(pitch), 0.0, np.cos(pitch)]])
         pose = np.eye(4)
-        pose[:3, :3] = about_z @ about_y @ _BASE_FROM_OPTICAL
+        pose[:3, :3] = rotation_about(2, yaw) @ rotation_about(1, pitch) @ BASE_FROM_OPTICAL
         pose[:2, 3] = 0.5 * (rear + front)
         pose[2, 3] = self._height_m + 0.004 * np.sin(11.3 * t_s)
         return pose

@@ -6,12 +6,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.simulator.actors.placement import BASE_FROM_OPTICAL, rotation_about
 from services.simulator.options import DriveOptions
 from services.simulator.worlds.street.road import LANE_CENTRE_M, Road
 
 Floats = NDArray[np.float64]
-
-_BASE_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 class EgoTrajectory:
@@ -46,18 +45,9 @@ class EgoTrajectory:
         yaw = float(np.arctan2(*(ahead - behind)[::-1]))
         pitch = np.deg2rad(0.18) * np.sin(5.1 * t_s) + np.deg2rad(0.10) * np.sin(8.7 * t_s + 1.0)
         roll = np.deg2rad(0.22) * np.sin(3.3 * t_s + 0.6)
-        world_from_base = _about(2, yaw) @ _about(1, pitch) @ _about(0, roll)
+        world_from_base = rotation_about(2, yaw) @ rotation_about(1, pitch) @ rotation_about(0, roll)
         pose = np.eye(4)
-        pose[:3, :3] = world_from_base @ _BASE_FROM_OPTICAL
+        pose[:3, :3] = world_from_base @ BASE_FROM_OPTICAL
         pose[:2, 3] = self.xy(t_s)
         pose[2, 3] = self._height_m + 0.012 * np.sin(6.3 * t_s)
         return pose
-
-
-def _about(axis: int, angle_rad: float) -> Floats:
-    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    rotation = np.eye(3)
-    rotation[i, i] = rotation[j, j] = cos
-    rotation[i, j], rotation[j, i] = -sin, sin
-    return rotation

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.motion import Path, SpeedProfile
-from services.simulator.actors.placement import axle_pose
+from services.simulator.actors.placement import BASE_FROM_OPTICAL, axle_pose, rotation_about
 from services.simulator.worlds.town.traffic.population import CAMERA_AHEAD_M
 
 Floats = NDArray[np.float64]
 
-_BASE_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _HALF_BASE_M = 1.3
 _ROLLING_M_S = 4.0
 """From this speed on the car sways with its whole amplitude; standing it does not."""
@@ -42,15 +41,6 @@ class CarCamera:
         roll = rolling * np.deg2rad(0.22) * np.sin(3.3 * t_s + 0.6)
         bounce = rolling * 0.012 * np.sin(6.3 * t_s)
         pose = np.eye(4)
-        pose[:3, :3] = world_from_car[:3, :3] @ _about(1, pitch) @ _about(0, roll) @ _BASE_FROM_OPTICAL
+        pose[:3, :3] = world_from_car[:3, :3] @ rotation_about(1, pitch) @ rotation_about(0, roll) @ BASE_FROM_OPTICAL
         pose[:3, 3] = world_from_car[:3, :3] @ [CAMERA_AHEAD_M, 0.0, self._height_m + bounce] + world_from_car[:3, 3]
         return pose
-
-
-def _about(axis: int, angle_rad: float) -> Floats:
-    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    rotation = np.eye(3)
-    rotation[i, i] = rotation[j, j] = cos
-    rotation[i, j], rotation[j, i] = -sin, sin
-    return rotation
