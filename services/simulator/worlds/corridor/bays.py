@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.placement import planar_pose
-from services.simulator.painting.indoor import SCREEN_COUNT
+from services.simulator.painting.indoor.library import SCREEN_COUNT
 from services.simulator.shapes.meshes import Mesh
 from services.simulator.shapes.things import furniture
 from services.simulator.worlds.corridor.plan import Bay

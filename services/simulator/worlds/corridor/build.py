@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from services.simulator.options import DriveOptions
-from services.simulator.painting.indoor import paint_indoor_library
+from services.simulator.painting.indoor.library import paint_indoor_library
 from services.simulator.rendering.light import Light
 from services.simulator.rendering.textures import TextureAtlas
 from services.simulator.worlds.corridor.crowd import Crowd

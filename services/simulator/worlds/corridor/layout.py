@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from services.simulator.painting.indoor import WALL_COUNT
+from services.simulator.painting.indoor.library import WALL_COUNT
 from services.simulator.shapes.meshes import Mesh, box, merged, quads
 from services.simulator.worlds.corridor.bays import bay_furniture
 from services.simulator.worlds.corridor.plan import CEILING_M, HALF_WIDTH_M, Bay, FloorPlan, Wall

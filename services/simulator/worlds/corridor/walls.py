@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.simulator.actors.placement import planar_pose
-from services.simulator.painting.indoor import DOOR_COUNT, POSTER_COUNT
+from services.simulator.painting.indoor.library import DOOR_COUNT, POSTER_COUNT
 from services.simulator.shapes.meshes import Mesh, box, merged, quads
 from services.simulator.shapes.things import furniture
 from services.simulator.worlds.corridor.plan import CEILING_M
