@@ -11,6 +11,7 @@ from services.simulator.painting.surfaces import Image, coloured, noise, to_imag
 
 
 def radiator(rng: np.random.Generator, width: int = 256, height: int = 128) -> Image:
+    """Ribs of sheet metal, dark between them."""
     value = noise(rng, height, width, [(6, 4), (64, 4)])
     value[:, np.arange(width) % 16 < 3] -= 74.0
     value[:6] -= 40.0

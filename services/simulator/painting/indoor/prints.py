@@ -44,12 +44,14 @@ def notice_board(rng: np.random.Generator, size: int = 256) -> Image:
 
 
 def exit_sign(rng: np.random.Generator, width: int = 128, height: int = 64) -> Image:
+    """White letters on green."""
     canvas = coloured(noise(rng, height, width, [(4, 6)]), (90.0, 150.0, 40.0))
     write(canvas, "EXIT", (12, 46), (1.4, 4), (240.0, 244.0, 240.0))
     return to_image(canvas)
 
 
 def badge(rng: np.random.Generator, size: int = 64) -> Image:
+    """A name plate: a mark and small print."""
     canvas = coloured(noise(rng, size, size, [(6, 6)]), (230.0, 232.0, 232.0))
     small_print(rng, canvas, (8, 34, size - 8, size - 6))
     cv2.circle(canvas, (18, 18), 10, (120.0, 140.0, 180.0), -1)
