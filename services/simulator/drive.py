@@ -95,6 +95,8 @@ class Drive:
         Raises:
             InputError: no such frame, or it is the last one.
         """
+        if index == self.frame_count - 1:
+            raise InputError(f"simulator flow of frame {index}: expected a frame before it, the last one has no next")
         next_t_s = self._time_s(index + 1)
         moment, sight = self._seen_at(index)
         _, next_sight = self._seen_at(index + 1)

@@ -85,3 +85,8 @@ def test_another_seed_gives_another_street(street: Drive) -> None:
 def test_frame_outside_the_drive_is_refused(street: Drive, index: int) -> None:
     with pytest.raises(InputError, match=f"frame {index}: expected 0 to 319"):
         street.render(index)
+
+
+def test_the_last_frame_has_no_flow(street: Drive) -> None:
+    with pytest.raises(InputError, match="flow of frame 319: expected a frame before it"):
+        street.flow(319)

@@ -140,7 +140,7 @@ def test_orb_finds_and_matches_features_as_on_real_images(world: str) -> None:
     assert min(behaviour.right for behaviour in found) >= 0.6
 
 
-@pytest.mark.parametrize("options", [{}, SLOPES], ids=str)
+@pytest.mark.parametrize("options", [{}, SLOPES, {"world": "corridor", "traffic": 0.8}], ids=str)
 def test_surfaces_of_objects_lie_in_their_cuboids(options: dict[str, Any]) -> None:
     drive = Drive(DriveOptions(seed=6, **options))
     pitches = []
@@ -158,5 +158,5 @@ def test_surfaces_of_objects_lie_in_their_cuboids(options: dict[str, Any]) -> No
             outside = np.abs(own) - 0.5 * np.array(found.size_m)
             assert np.percentile(outside.max(axis=1), 98) < 0.35, found
             pitches.append(abs(found.pitch_rad))
-    assert len(pitches) > 20
+    assert len(pitches) > (10 if drive.options.world == "corridor" else 20)
     assert (max(pitches) > np.deg2rad(1.0)) == (drive.options.world == "town")
