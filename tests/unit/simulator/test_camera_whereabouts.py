@@ -6,17 +6,17 @@ import numpy as np
 from services.simulator.drive import Drive
 from services.simulator.options import DriveOptions
 from services.simulator.rendering.whereabouts import Reach, Whereabouts
-from services.simulator.worlds.build import build_world
+from tests.unit.simulator.traffic_scene import planned
 
 
 def test_everybody_in_range_is_found_and_many_others_are_not() -> None:
-    world = build_world(DriveOptions(world="town", traffic=0.6, seed=3))
-    actors = [actor for actor in world.actors if not actor.always_still]
+    everybody, camera = planned(DriveOptions(world="town", seed=2, traffic=0.5, max_slope=0.1))
+    actors = [actor for actor in everybody if not actor.always_still]
     whereabouts = Whereabouts(actors)
     asked = 0
     reach = Reach(range_m=80.0, slope=0.84, around_m=15.0)
     for t_s in (0.0, 3.3, 12.49, 12.51, 63.6, 64.0, 5.0):
-        pose = world.camera_path.world_from_camera(t_s)
+        pose = camera.world_from_camera(t_s)
         found = set(whereabouts.perhaps_in_sight(pose, t_s, reach).tolist())
         for number, actor in enumerate(actors):
             state = actor.at(t_s)
