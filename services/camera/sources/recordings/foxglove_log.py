@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """MCAP files with Foxglove's messages as protobuf: RawImage, CompressedImage, CameraCalibration, PoseInFrame."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
@@ -25,8 +24,9 @@ from services.camera.sources.recordings.message_log import (
     LoggedTopic,
     RawPixels,
     StaticTransform,
+    damage_refused,
 )
-from services.runtime.errors import InputError, KinemapError
+from services.runtime.errors import InputError
 
 
 class _Known(NamedTuple):
@@ -52,7 +52,7 @@ class FoxgloveLog:
         self._path = path
         self._stream = path.open("rb")
         try:
-            with self._as_input_error():
+            with self._damage_refused():
                 self._reader = make_reader(self._stream, validate_crcs=True)
                 summary = self._reader.get_summary()
                 if summary is None:
@@ -82,7 +82,7 @@ class FoxgloveLog:
 
     def index(self, topic: str) -> list[LoggedMessage]:
         places: list[LoggedMessage] = []
-        with self._as_input_error():
+        with self._damage_refused():
             for _, _, record in self._reader.iter_messages(topics=[topic]):
                 repeats = bool(places) and places[-1].recorded_ns == record.log_time
                 number = places[-1].number + 1 if repeats else 0
@@ -126,7 +126,7 @@ class FoxgloveLog:
         self._stream.close()
 
     def _message(self, topic: str, place: LoggedMessage) -> Any:
-        with self._as_input_error():
+        with self._damage_refused():
             at = self._reader.iter_messages([topic], starting_at=place.recorded_ns, ending_at=place.recorded_ns)
             _, _, record = next(islice(at, place.number, None))
             return self._parsed(topic, record.data)
@@ -136,13 +136,5 @@ class FoxgloveLog:
         message.ParseFromString(data)
         return message
 
-    @contextmanager
-    def _as_input_error(self) -> Iterator[None]:
-        try:
-            yield
-        except KinemapError:
-            raise
-        # mcap, protobuf, lz4 and zstd meet damage with whatever they stumble over.
-        except Exception as error:
-            why = " ".join(str(error).split()) or type(error).__name__
-            raise InputError(f"{self._path}: cut off or damaged ({why}), expected a whole MCAP file") from error
+    def _damage_refused(self) -> AbstractContextManager[None]:
+        return damage_refused(str(self._path), "a whole MCAP file")

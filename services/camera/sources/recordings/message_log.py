@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a recording of messages is to the camera, whichever robot software wrote it."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
+
+from services.runtime.errors import InputError, KinemapError
 
 Kind = Literal["image", "info", "pose"]
 
@@ -110,3 +114,16 @@ class MessageLog(Protocol):
 
     def close(self) -> None:
         """Close the recording."""
+
+
+@contextmanager
+def damage_refused(what: str, expected: str) -> Iterator[None]:
+    """Whatever a reader stumbles over in `what`, as one InputError that says what was `expected`."""
+    try:
+        yield
+    except KinemapError:
+        raise
+    # mcap, rosbags, protobuf, and SQLite, lz4 and zstd below them, meet damage with whatever they stumble over.
+    except Exception as error:
+        why = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+        raise InputError(f"{what}: cut off or damaged ({why}), expected {expected}") from error

@@ -2,8 +2,7 @@
 """Bags of ROS 1 (.bag) and ROS 2 (a folder with metadata.yaml, .db3, .mcap), read by rosbags: no ROS is installed."""
 
 import struct
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
@@ -23,10 +22,11 @@ from services.camera.sources.recordings.message_log import (
     LoggedTopic,
     RawPixels,
     StaticTransform,
+    damage_refused,
 )
 from services.camera.sources.recordings.message_source import MessageSource
 from services.camera.sources.recordings.message_topics import TopicOptions
-from services.runtime.errors import InputError, KinemapError
+from services.runtime.errors import InputError
 
 _KINDS: Final = MappingProxyType[str, Kind]({
     "sensor_msgs/msg/Image": "image",
@@ -46,7 +46,7 @@ class RosBag:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        with self._as_input_error():
+        with self._damage_refused():
             # ROS 2 bags before Iron do not hold the definitions of their messages.
             self._reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
             self._reader.open()
@@ -70,7 +70,7 @@ class RosBag:
 
     def index(self, topic: str) -> list[LoggedMessage]:
         places: list[LoggedMessage] = []
-        with self._as_input_error():
+        with self._damage_refused():
             for _, recorded_ns, data in self._reader.messages(self._connections[topic]):
                 repeats = bool(places) and places[-1].recorded_ns == recorded_ns
                 number = places[-1].number + 1 if repeats else 0
@@ -134,7 +134,7 @@ class RosBag:
             self._reader.close()
 
     def _message(self, topic: str, place: LoggedMessage) -> Any:
-        with self._as_input_error():
+        with self._damage_refused():
             at = self._reader.messages(self._connections[topic], place.recorded_ns, place.recorded_ns + 1)
             connection, _, data = next(islice(at, place.number, None))
             return self._reader.deserialize(data, connection.msgtype)
@@ -148,18 +148,8 @@ class RosBag:
             seconds, nanoseconds = struct.unpack_from("<II", data, 4)
         return int(seconds) * _NS_PER_S + int(nanoseconds)
 
-    @contextmanager
-    def _as_input_error(self) -> Iterator[None]:
-        try:
-            yield
-        except KinemapError:
-            raise
-        # rosbags, and SQLite, lz4 and zstd below it, meet damage with whatever they stumble over.
-        except Exception as error:
-            why = " ".join(str(error).split()) or type(error).__name__
-            raise InputError(
-                f"bag {self._path}: cut off or damaged ({why.rstrip('.')}), expected a whole bag of ROS 1 or 2"
-            ) from error
+    def _damage_refused(self) -> AbstractContextManager[None]:
+        return damage_refused(f"bag {self._path}", "a whole bag of ROS 1 or 2")
 
 
 def open_ros_bag(path: Path, topics: TopicOptions, *, calibration: Path | None = None) -> MessageSource:
