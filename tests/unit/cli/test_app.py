@@ -6,24 +6,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import cv2
 import numpy as np
 import pytest
 
-from services.cli.app import main
 from services.cli.run import resolve_run
 from services.runtime.session_file import SessionFile
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    code: int
-    out: str
-    err: str
-
+from tests.command_line import Ended, run_kinemap
 
 Kinemap = Callable[..., Ended]
 
@@ -36,11 +26,7 @@ def kinemap(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     monkeypatch.setenv("COLUMNS", "200")
 
     def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["kinemap", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        code = ended.value.code
-        return Ended(int(code or 0), *capsys.readouterr())
+        return run_kinemap(monkeypatch, capsys, *arguments)
 
     return run
 

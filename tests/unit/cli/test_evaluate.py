@@ -3,24 +3,13 @@
 
 import json
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
-from services.cli.app import main
 from services.cli.evaluate.app import subcommand_for
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    code: int
-    out: str
-    err: str
-
+from tests.command_line import Ended, run_kinemap
 
 Kinemap = Callable[..., Ended]
 
@@ -33,10 +22,7 @@ def kinemap(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     monkeypatch.setenv("COLUMNS", "200")
 
     def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["kinemap", "evaluate", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return Ended(int(ended.value.code or 0), *capsys.readouterr())
+        return run_kinemap(monkeypatch, capsys, "evaluate", *arguments)
 
     return run
 

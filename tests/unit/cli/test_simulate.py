@@ -7,27 +7,18 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import cv2
 import numpy as np
 import pytest
 
-from services.cli.app import main
 from services.cli.simulate_seeds import parse_seeds, parse_size
 from services.runtime.errors import InputError
+from tests.command_line import Ended, run_kinemap
 
 pytest.importorskip("pycocotools")
 
 TINY = ("--size", "96x64", "--frames", "6", "--set", "simulator.empty_start_m=0")
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    code: int
-    out: str
-    err: str
 
 
 Simulate = Callable[..., Ended]
@@ -41,13 +32,10 @@ def simulate(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
     before = signal.getsignal(signal.SIGTERM)
 
     def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["kinemap", "simulate", *map(str, arguments)])
         try:
-            with pytest.raises(SystemExit) as ended:
-                main()
+            return run_kinemap(monkeypatch, capsys, "simulate", *arguments)
         finally:
             signal.signal(signal.SIGTERM, before)
-        return Ended(int(ended.value.code or 0), *capsys.readouterr())
 
     return run
 

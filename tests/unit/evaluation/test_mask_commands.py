@@ -2,27 +2,17 @@
 """`kinemap evaluate masks|moving|flow|tracking` as a user types them."""
 
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
 
-from services.cli.app import main
 from services.formats.kitti_flow import FlowImage, write_kitti_flow
 from services.formats.kitti_tracking import TrackedBox, write_kitti_tracking
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
-
-
-class Ended(NamedTuple):
-    """How a command ended."""
-
-    code: int
-    out: str
-    err: str
-
+from tests.command_line import Ended, run_kinemap
 
 Evaluate = Callable[..., Ended]
 
@@ -33,10 +23,7 @@ def evaluate(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
     monkeypatch.setenv("NO_COLOR", "1")
 
     def run(*arguments: str | Path) -> Ended:
-        monkeypatch.setattr(sys, "argv", ["kinemap", "evaluate", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return Ended(int(ended.value.code or 0), *capsys.readouterr())
+        return run_kinemap(monkeypatch, capsys, "evaluate", *arguments)
 
     return run
 

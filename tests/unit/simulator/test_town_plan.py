@@ -15,7 +15,7 @@ from services.simulator.worlds.town.profile import (
     LANE_CENTRES_M,
     SIDE_STOP_M,
 )
-from services.simulator.worlds.town.survey import TownSurvey, plan_town, survey_town
+from services.simulator.worlds.town.survey import TownSurvey, survey_town
 
 SEEDS = range(24)
 
@@ -78,7 +78,7 @@ def test_camera_starts_at_the_origin_on_a_straight_piece() -> None:
 
 @pytest.mark.parametrize("n", [-6.0, 0.0, 5.0])
 def test_heading_is_the_direction_of_the_points(n: float) -> None:
-    plan = plan_town(DriveOptions(world="town", seed=3))
+    plan = survey_town(DriveOptions(world="town", seed=3)).plan
     lines = [plan.loop, *(arm for crossing in plan.crossings for arm in (crossing.left, crossing.right) if arm)]
     for line in lines:
         s = np.linspace(1.0, line.length_m - 1.0, 700)
@@ -169,7 +169,7 @@ def test_zebra_crossings_keep_clear_of_junctions_and_of_the_start() -> None:
 
 def test_same_seed_same_plan_whatever_the_traffic() -> None:
     def fingerprint(seed: int, traffic_seed: int | None = None) -> bytes:
-        plan = plan_town(DriveOptions(world="town", seed=seed, traffic_seed=traffic_seed))
+        plan = survey_town(DriveOptions(world="town", seed=seed, traffic_seed=traffic_seed)).plan
         places = plan.loop.point(np.arange(0.0, 640.0, 3.0), 2.0)
         crossings = np.array([crossing.s_m for crossing in plan.crossings])
         return places.tobytes() + plan.ground.height_m(places).tobytes() + crossings.tobytes()

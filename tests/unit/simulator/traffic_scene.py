@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from services.simulator.actors.actor import Actor
 from services.simulator.options import DriveOptions
 from services.simulator.worlds.town.plan import TownPlan
-from services.simulator.worlds.town.survey import plan_town
+from services.simulator.worlds.town.survey import survey_town
 from services.simulator.worlds.town.traffic.camera_car import CarCamera
 from services.simulator.worlds.town.traffic.planner import plan_traffic
 
@@ -26,7 +26,7 @@ CAMERA_AHEAD_M = 1.1
 @cache
 def town(seed: int) -> TownPlan:
     """The plan of a town."""
-    return plan_town(DriveOptions(world="town", seed=seed))
+    return survey_town(DriveOptions(world="town", seed=seed)).plan
 
 
 @cache

@@ -45,11 +45,6 @@ class TownSurvey:
         ]
 
 
-def plan_town(options: DriveOptions) -> TownPlan:
-    """Streets and ground of the town that `options.seed`, `loop_m` and `max_slope` give."""
-    return survey_town(options).plan
-
-
 def survey_town(options: DriveOptions) -> TownSurvey:
     """The whole survey; what stands follows from it and the seed alone."""
     loop = town_loop(options.seed, options.loop_m)
