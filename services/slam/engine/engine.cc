@@ -56,7 +56,8 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       map_builder_(camera, scales_),
       tracker_({}, camera),
       keyframe_policy_({}),
-      mapper_(MapperOptions(options), camera) {
+      mapper_(MapperOptions(options), camera),
+      atlas_(options.map_id, scales_) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -91,23 +92,23 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
   TrackingResult result;
   result.timestamp_ns = begun_->timestamp_ns;
   result.stage_ms.extract_ms = begun_->extract_ms;
-  result.map_id = options_.map_id;
+  result.map_id = atlas_.active_map_id();
   result.features = begun_->features->size();
   Frame frame = MakeFrame(objects);
   last_timestamp_ns_ = begun_->timestamp_ns;
   begun_.reset();
-  if (map_ == nullptr) {
+  if (map() == nullptr) {
     Initialize(&frame, depth_m, &result);
   } else {
     const Stopwatch stopwatch;
-    mapper_.MergeIfDue(map_.get(), frame_index_);
+    mapper_.MergeIfDue(map(), frame_index_);
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     if (options_.stage == Stage::kMoving && objects.masks_fresh) {
-      object_states_.Update(objects.rows, frame.timestamp_ns, map_.get());
+      object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, depth_m, &result);
   }
-  result.metric_scale = metric_scale_;
+  result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
 }
 
@@ -118,12 +119,11 @@ void Engine::Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* re
   const std::optional<InitialMap> initial = initializer_.Try(*frame, random);
   result->reason = initializer_.reason();
   if (initial) {
-    BuiltMap built = map_builder_.Build(options_.map_id, RigidTransform::FromMatrix(options_.map_from_first_camera),
-                                        *initial, *frame, depth_m);
+    BuiltMap built = map_builder_.Build(
+        atlas_.next_map_id(), RigidTransform::FromMatrix(options_.map_from_first_camera), *initial, *frame, depth_m);
     result->reason = built.reason;
     if (built.map != nullptr) {
-      map_ = std::move(built.map);
-      metric_scale_ = built.metric_scale;
+      atlas_.Add(std::move(built.map)).set_metric_scale(built.metric_scale);
       *frame = std::move(built.current);
       last_keyframe_index_ = frame_index_;
       result->keyframe_inserted = true;
@@ -132,17 +132,17 @@ void Engine::Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* re
       if (!late_frames_.empty() && !waiting_.empty() &&
           late_frames_.back().timestamp_ns == waiting_.back().timestamp_ns) {
         const LateFramePose& late = late_frames_.back();
-        previous = late.camera_from_reference * map_->MapFromKeyframe(late.reference_keyframe_id).Inverse();
+        previous = map()->CameraFromMap(late.camera_from_reference, late.reference_keyframe_id);
       }
       waiting_.clear();
-      tracker_.Start(*map_, *frame, previous);
+      tracker_.Start(*map(), *frame, previous);
       result->state = TrackingState::kTracking;
-      PoseEstimate estimate = FramePoseSolver(camera_).Solve(*map_, frame);
+      PoseEstimate estimate = FramePoseSolver(camera_).Solve(*map(), frame);
       result->tracked_landmarks = estimate.inliers;
       ReportPose(*frame, estimate.information, result);
     }
   }
-  if (map_ == nullptr) {
+  if (map() == nullptr) {
     waiting_.push_back(*frame);
     if (waiting_.size() > kMostWaitingFrames) waiting_.pop_front();
   }
@@ -152,7 +152,7 @@ void Engine::Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* re
 void Engine::FillWaitingFrames(const Frame& first, const Frame& current) {
   const LocalMapTracker local_map_tracker(camera_);
   const double span_ns = static_cast<double>(current.timestamp_ns - first.timestamp_ns);
-  const RigidTransform first_from_map = map_->MapFromKeyframe(map_->first_keyframe_id()).Inverse();
+  const RigidTransform first_from_map = map()->MapFromKeyframe(map()->first_keyframe_id()).Inverse();
   const RigidTransform current_from_first = current.camera_from_map * first_from_map.Inverse();
   const Eigen::AngleAxisd turn(current_from_first.rotation);
   for (Frame& frame : waiting_) {
@@ -161,18 +161,18 @@ void Engine::FillWaitingFrames(const Frame& first, const Frame& current) {
     const Eigen::AngleAxisd part_turn(part * turn.angle(), turn.axis());
     frame.camera_from_map =
         RigidTransform(Eigen::Quaterniond(part_turn), part * current_from_first.translation) * first_from_map;
-    frame.reference_keyframe_id = map_->first_keyframe_id();
+    frame.reference_keyframe_id = map()->first_keyframe_id();
     frame.ForgetMatches();
-    if (ProjectKeyframe(*map_, camera_, map_->last_keyframe_id(), 15.0, kMaxHammingDistance, &frame) == 0) continue;
-    if (FramePoseSolver(camera_).Solve(*map_, &frame).inliers < kLeastFilledInliers) continue;
-    if (local_map_tracker.Track(map_.get(), 1.0, &frame).inliers < kLeastFilledInliers) continue;
+    if (ProjectKeyframe(*map(), camera_, map()->last_keyframe_id(), 15.0, kMaxHammingDistance, &frame) == 0) continue;
+    if (FramePoseSolver(camera_).Solve(*map(), &frame).inliers < kLeastFilledInliers) continue;
+    if (local_map_tracker.Track(map(), 1.0, &frame).inliers < kLeastFilledInliers) continue;
     late_frames_.push_back({frame.timestamp_ns, frame.reference_keyframe_id,
-                            frame.camera_from_map * map_->MapFromKeyframe(frame.reference_keyframe_id)});
+                            map()->CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id)});
   }
 }
 
 void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result) {
-  const TrackedPose pose = tracker_.Track(map_.get(), frame);
+  const TrackedPose pose = tracker_.Track(map(), frame);
   result->stage_ms.match_ms = pose.match_ms;
   result->stage_ms.local_map_ms = pose.local_map_ms;
   result->state = pose.tracked ? TrackingState::kTracking : TrackingState::kLost;
@@ -182,10 +182,10 @@ void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result)
   if (NeedsKeyframe(*frame, pose.estimate.inliers)) {
     const Stopwatch stopwatch;
     const RigidTransform camera_from_map = frame->camera_from_map;
-    frame->reference_keyframe_id = mapper_.Insert(map_.get(), *frame, depth_m, frame_index_, &result->moving_unplaced);
+    frame->reference_keyframe_id = mapper_.Insert(map(), *frame, depth_m, frame_index_, &result->moving_unplaced);
     frame->camera_from_map = camera_from_map;
     last_keyframe_index_ = frame_index_;
-    tracker_.FollowKeyframe(*map_, frame->reference_keyframe_id);
+    tracker_.FollowKeyframe(*map(), frame->reference_keyframe_id);
     result->keyframe_inserted = true;
     result->stage_ms.mapping_ms = stopwatch.ElapsedMs();
   }
@@ -199,27 +199,28 @@ bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
   quality.mapper_is_free = mapper_.IsFree();
   quality.tracked = tracked;
   // In a map of two keyframes no landmark has three observations yet.
-  const int min_observations = map_->live_keyframe_count() <= 2 ? 2 : 3;
-  quality.reference_tracked = map_->CountTracked(frame.reference_keyframe_id, min_observations);
+  const int min_observations = map()->live_keyframe_count() <= 2 ? 2 : 3;
+  quality.reference_tracked = map()->CountTracked(frame.reference_keyframe_id, min_observations);
   return keyframe_policy_.NeedsKeyframe(quality);
 }
 
 void Engine::ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const {
   result->map_from_camera = frame.camera_from_map.Inverse().Matrix();
   result->reference_keyframe_id = frame.reference_keyframe_id;
-  result->camera_from_reference = (frame.camera_from_map * map_->MapFromKeyframe(frame.reference_keyframe_id)).Matrix();
+  result->camera_from_reference =
+      map()->CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id).Matrix();
   const Matrix6d covariance = information.inverse();
   if (covariance.allFinite()) result->covariance = covariance;
 }
 
 void Engine::Flush() {
-  if (map_ != nullptr) mapper_.Finish(map_.get());
+  if (map() != nullptr) mapper_.Finish(map());
 }
 
 MapUpdate Engine::TakeUpdate() {
   const std::vector<LateFramePose> late_frames = std::move(late_frames_);
   late_frames_.clear();
-  return TakeMapUpdate(map_.get(), late_frames);
+  return TakeMapUpdate(map(), late_frames);
 }
 
 }  // namespace kinemap

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <deque>
-#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
 
 #include "engine_options.h"
 #include "features/orb_extractor.h"
+#include "map/atlas.h"
 #include "map_update.h"
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
@@ -57,6 +57,8 @@ class Engine {
   void Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
   void FillWaitingFrames(const Frame& first, const Frame& current);
   void Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
+  SlamMap* map() { return atlas_.active(); }
+  const SlamMap* map() const { return atlas_.active(); }
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
@@ -70,7 +72,7 @@ class Engine {
   KeyframePolicy keyframe_policy_;
   LocalMapper mapper_;
   ObjectStates object_states_;
-  std::unique_ptr<SlamMap> map_;
+  Atlas atlas_;
 
   struct BegunFrame {
     int64_t timestamp_ns;
@@ -81,7 +83,6 @@ class Engine {
   std::optional<int64_t> last_timestamp_ns_;
   int64_t frame_index_ = -1;
   int64_t last_keyframe_index_ = 0;
-  bool metric_scale_ = false;
   std::deque<Frame> waiting_;  // frames before the map existed
   std::vector<LateFramePose> late_frames_;
 };

@@ -6,11 +6,13 @@ namespace {
 
 void AddKeyframe(const SlamMap& map, KeyframeId id, MapUpdate* update) {
   const Keyframe& keyframe = map.keyframe(id);
-  const PoseArray pose = ToPoseArray(map.MapFromKeyframe(id));
+  const SimilarityTransform map_from_anchor = map.MapFromAnchor(id);
+  const PoseArray pose = ToPoseArray(map_from_anchor.WithoutScale());
   update->keyframe_id.push_back(id);
   update->keyframe_timestamp_ns.push_back(keyframe.timestamp_ns);
   update->keyframe_map_id.push_back(map.map_id());
-  update->keyframe_pose.push_back({pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], 1.0});
+  update->keyframe_pose.push_back(
+      {pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], map_from_anchor.scale});
   update->keyframe_culled.push_back(keyframe.culled ? 1 : 0);
   update->keyframe_parent_id.push_back(keyframe.parent_id);
 }

@@ -37,6 +37,12 @@ std::vector<KeyframeId> CovisibilityGraph::Neighbors(KeyframeId keyframe_id, int
   return neighbors;
 }
 
+const std::map<KeyframeId, int>& CovisibilityGraph::Edges(KeyframeId keyframe_id) const {
+  static const std::map<KeyframeId, int> kNone;
+  const auto found = edges_.find(keyframe_id);
+  return found == edges_.end() ? kNone : found->second;
+}
+
 int CovisibilityGraph::Shared(KeyframeId a, KeyframeId b) const {
   const auto from = edges_.find(a);
   if (from == edges_.end()) return 0;

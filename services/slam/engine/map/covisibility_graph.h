@@ -18,6 +18,9 @@ class CovisibilityGraph {
   /// Neighbours that share at least `min_shared` landmarks, most first, equal ones by id; at most `max_count`.
   std::vector<KeyframeId> Neighbors(KeyframeId keyframe_id, int max_count, int min_shared = 1) const;
 
+  /// All neighbours of a keyframe and what each shares with it.
+  const std::map<KeyframeId, int>& Edges(KeyframeId keyframe_id) const;
+
   int Shared(KeyframeId a, KeyframeId b) const;
 
  private:

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "features/frame_features.h"
 #include "features/object_labels.h"
-#include "geometry/rigid_transform.h"
+#include "geometry/similarity_transform.h"
 #include "map/ids.h"
 
 namespace kinemap {
@@ -18,9 +19,11 @@ struct Keyframe {
   std::vector<FeatureLabel> labels;      ///< one a keypoint
   std::vector<LandmarkId> landmark_ids;  ///< one a keypoint, kNoId where it observes none
   RigidTransform map_from_keyframe;      ///< of a culled keyframe: ask SlamMap::MapFromKeyframe
+  double scale = 1;                      ///< map units in one unit of the landmarks anchored here
+  std::set<KeyframeId> loop_edges;       ///< keyframes that a recognised place ties to this one
   bool culled = false;
-  KeyframeId parent_id = kNoId;         ///< of a culled keyframe
-  RigidTransform parent_from_keyframe;  ///< of a culled keyframe
+  KeyframeId parent_id = kNoId;              ///< of a culled keyframe
+  SimilarityTransform parent_from_keyframe;  ///< of a culled keyframe, between what is anchored in the two
 };
 
 }  // namespace kinemap

@@ -6,19 +6,19 @@
 
 namespace kinemap {
 
-SlamMap::SlamMap(int64_t map_id, const PyramidScales& scales) : first_id_(map_id << 32), scales_(scales) {}
+SlamMap::SlamMap(int64_t map_id, const PyramidScales& scales) : map_id_(map_id), scales_(scales) {}
 
 Keyframe& SlamMap::InsertKeyframe(const Frame& frame) {
   auto keyframe = std::make_unique<Keyframe>();
-  keyframe->id = first_id_ + static_cast<int64_t>(keyframes_.size());
+  keyframe->id = last_keyframe_id_ = keyframes_.NextId(map_id_);
   keyframe->timestamp_ns = frame.timestamp_ns;
   keyframe->features = frame.features;
   keyframe->labels = frame.labels;
   keyframe->landmark_ids.assign(frame.size(), kNoId);
   keyframe->map_from_keyframe = frame.camera_from_map.Inverse();
-  keyframes_.push_back(std::move(keyframe));
+  Keyframe& inserted = keyframes_.Append(map_id_, std::move(keyframe));
+  ++keyframe_count_;
   ++live_keyframes_;
-  Keyframe& inserted = *keyframes_.back();
   changed_keyframes_.insert(inserted.id);
   for (int i = 0; i < frame.size(); ++i) {
     Landmark* landmark = FindLandmark(frame.landmark_ids[i]);
@@ -34,9 +34,9 @@ Keyframe& SlamMap::InsertKeyframe(const Frame& frame) {
 
 std::vector<KeyframeId> SlamMap::LiveKeyframes() const {
   std::vector<KeyframeId> ids;
-  for (const auto& keyframe : keyframes_) {
-    if (!keyframe->culled) ids.push_back(keyframe->id);
-  }
+  keyframes_.ForEach([&](const Keyframe& keyframe) {
+    if (!keyframe.culled) ids.push_back(keyframe.id);
+  });
   return ids;
 }
 
@@ -45,10 +45,10 @@ KeyframeId SlamMap::LiveKeyframe(KeyframeId id) const {
   return id;
 }
 
-RigidTransform SlamMap::MapFromKeyframe(KeyframeId id) const {
+SimilarityTransform SlamMap::MapFromAnchor(KeyframeId id) const {
   const Keyframe& node = keyframe(id);
-  if (!node.culled) return node.map_from_keyframe;
-  return MapFromKeyframe(node.parent_id) * node.parent_from_keyframe;
+  if (!node.culled) return SimilarityTransform(node.map_from_keyframe, node.scale);
+  return MapFromAnchor(node.parent_id) * node.parent_from_keyframe;
 }
 
 void SlamMap::SetKeyframePose(KeyframeId id, const RigidTransform& map_from_keyframe) {
@@ -56,18 +56,42 @@ void SlamMap::SetKeyframePose(KeyframeId id, const RigidTransform& map_from_keyf
   changed_keyframes_.insert(id);
 }
 
+void SlamMap::SetKeyframePose(KeyframeId id, const SimilarityTransform& map_from_anchor) {
+  mutable_keyframe(id).scale = map_from_anchor.scale;
+  SetKeyframePose(id, map_from_anchor.WithoutScale());
+}
+
+RigidTransform SlamMap::CameraFromReference(const RigidTransform& camera_from_map, KeyframeId reference_id) const {
+  const SimilarityTransform map_from_anchor = MapFromAnchor(reference_id);
+  RigidTransform camera_from_reference = camera_from_map * map_from_anchor.WithoutScale();
+  camera_from_reference.translation /= map_from_anchor.scale;
+  return camera_from_reference;
+}
+
+RigidTransform SlamMap::CameraFromMap(const RigidTransform& camera_from_reference, KeyframeId reference_id) const {
+  const SimilarityTransform map_from_anchor = MapFromAnchor(reference_id);
+  RigidTransform scaled = camera_from_reference;
+  scaled.translation *= map_from_anchor.scale;
+  return scaled * map_from_anchor.WithoutScale().Inverse();
+}
+
+void SlamMap::AddLoopEdge(KeyframeId a, KeyframeId b) {
+  mutable_keyframe(a).loop_edges.insert(b);
+  mutable_keyframe(b).loop_edges.insert(a);
+}
+
 void SlamMap::CullKeyframe(KeyframeId id) {
   Keyframe& keyframe = mutable_keyframe(id);
   const std::vector<KeyframeId> neighbors = covisibility_.Neighbors(id, 1);
-  keyframe.parent_id = neighbors.empty() ? first_id_ : neighbors.front();
-  keyframe.parent_from_keyframe = MapFromKeyframe(keyframe.parent_id).Inverse() * keyframe.map_from_keyframe;
+  keyframe.parent_id = neighbors.empty() ? first_keyframe_id() : neighbors.front();
+  keyframe.parent_from_keyframe = MapFromAnchor(keyframe.parent_id).Inverse() * MapFromAnchor(id);
   for (const LandmarkId landmark_id : keyframe.landmark_ids) {
     Landmark* landmark = FindLandmark(landmark_id);
     if (landmark != nullptr) EraseObservation(landmark, id);
   }
-  for (const auto& landmark : landmarks_) {
-    if (landmark != nullptr && landmark->anchor_id == id) Reanchor(landmark.get(), keyframe.parent_id);
-  }
+  landmarks_.ForEach([&](const Landmark& landmark) {
+    if (landmark.anchor_id == id) Reanchor(FindLandmark(landmark.id), keyframe.parent_id);
+  });
   covisibility_.Remove(id);
   keyframe.features.reset();
   keyframe.labels.clear();
@@ -111,13 +135,12 @@ double SlamMap::MedianDepth(KeyframeId id) const {
 }
 
 MapChanges SlamMap::TakeChanges() {
-  for (const auto& keyframe : keyframes_) {
+  keyframes_.ForEach([&](const Keyframe& keyframe) {
     // The pose of a culled keyframe changes with any of its parents'. Parents may be younger, so follow the chain.
-    for (const Keyframe* node = keyframe.get(); node->culled;) {
-      node = keyframes_[node->parent_id - first_id_].get();
-      if (changed_keyframes_.count(node->id) > 0 && !node->culled) changed_keyframes_.insert(keyframe->id);
+    if (keyframe.culled && changed_keyframes_.count(LiveKeyframe(keyframe.id)) > 0) {
+      changed_keyframes_.insert(keyframe.id);
     }
-  }
+  });
   MapChanges changes;
   changes.keyframes.assign(changed_keyframes_.begin(), changed_keyframes_.end());
   changes.landmarks.assign(changed_landmarks_.begin(), changed_landmarks_.end());
@@ -127,6 +150,31 @@ MapChanges SlamMap::TakeChanges() {
   changed_landmarks_.clear();
   removed_landmarks_.clear();
   return changes;
+}
+
+void SlamMap::Absorb(SlamMap&& other, const SimilarityTransform& this_from_other) {
+  const std::vector<KeyframeId> moved = other.LiveKeyframes();
+  for (const KeyframeId id : moved) {
+    other.SetKeyframePose(id, this_from_other * other.MapFromAnchor(id));
+    covisibility_.SetEdges(id, other.covisibility_.Edges(id));
+  }
+  other.keyframes_.ForEach([&](const Keyframe& keyframe) { changed_keyframes_.insert(keyframe.id); });
+  keyframes_.Absorb(std::move(other.keyframes_));
+  landmarks_.Absorb(std::move(other.landmarks_));
+  fused_into_.merge(other.fused_into_);
+  changed_landmarks_.merge(other.changed_landmarks_);
+  removed_landmarks_.merge(other.removed_landmarks_);
+  reported_landmarks_.merge(other.reported_landmarks_);
+  last_keyframe_id_ = std::max(last_keyframe_id_, other.last_keyframe_id_);
+  keyframe_count_ += other.keyframe_count_;
+  live_keyframes_ += other.live_keyframes_;
+  live_landmarks_ += other.live_landmarks_;
+  for (const KeyframeId id : moved) {
+    for (const LandmarkId landmark_id : keyframe(id).landmark_ids) {
+      Landmark* landmark = FindLandmark(landmark_id);
+      if (landmark != nullptr) UpdateViewRange(landmark);
+    }
+  }
 }
 
 }  // namespace kinemap

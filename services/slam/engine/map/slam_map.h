@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <set>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "features/pyramid_scales.h"
 #include "map/covisibility_graph.h"
 #include "map/frame.h"
+#include "map/id_table.h"
 #include "map/ids.h"
 #include "map/keyframe.h"
 #include "map/landmark.h"
@@ -27,24 +29,41 @@ class SlamMap {
  public:
   SlamMap(int64_t map_id, const PyramidScales& scales);
 
-  int64_t map_id() const { return first_id_ >> 32; }
+  int64_t map_id() const { return map_id_; }
+  /// Whether map units are metres.
+  bool metric_scale() const { return metric_scale_; }
+  void set_metric_scale(bool metric) { metric_scale_ = metric; }
   const PyramidScales& scales() const { return scales_; }
   const CovisibilityGraph& covisibility() const { return covisibility_; }
 
   // Keyframes.
   /// Takes over the frame's pose, features and matches, and observes the matched landmarks.
   Keyframe& InsertKeyframe(const Frame& frame);
-  const Keyframe& keyframe(KeyframeId id) const { return *keyframes_.at(id - first_id_); }
-  KeyframeId first_keyframe_id() const { return first_id_; }
-  KeyframeId last_keyframe_id() const { return first_id_ + static_cast<int64_t>(keyframes_.size()) - 1; }
-  int keyframe_count() const { return static_cast<int>(keyframes_.size()); }
+  const Keyframe& keyframe(KeyframeId id) const { return *keyframes_.Find(id); }
+  /// Null when the keyframe is not in this map.
+  const Keyframe* FindKeyframe(KeyframeId id) const { return keyframes_.Find(id); }
+  /// The keyframe that holds the map's origin.
+  KeyframeId first_keyframe_id() const { return map_id_ << 32; }
+  /// The keyframe inserted last.
+  KeyframeId last_keyframe_id() const { return last_keyframe_id_; }
+  int keyframe_count() const { return keyframe_count_; }
   int live_keyframe_count() const { return live_keyframes_; }
   std::vector<KeyframeId> LiveKeyframes() const;
   /// The keyframe itself, or the first of its parents that was not culled.
   KeyframeId LiveKeyframe(KeyframeId id) const;
   /// Also of a culled keyframe, through its parents.
-  RigidTransform MapFromKeyframe(KeyframeId id) const;
+  RigidTransform MapFromKeyframe(KeyframeId id) const { return MapFromAnchor(id).WithoutScale(); }
+  /// What turns positions of landmarks anchored at a keyframe, culled or not, into positions in the map.
+  SimilarityTransform MapFromAnchor(KeyframeId id) const;
+  /// The scale stays.
   void SetKeyframePose(KeyframeId id, const RigidTransform& map_from_keyframe);
+  /// Of a live keyframe. Landmarks anchored here move along; those it observes need UpdateViewRange after it.
+  void SetKeyframePose(KeyframeId id, const SimilarityTransform& map_from_anchor);
+  /// Pose of a camera by a keyframe, in the units of what is anchored there: it follows whatever becomes of the map.
+  RigidTransform CameraFromReference(const RigidTransform& camera_from_map, KeyframeId reference_id) const;
+  RigidTransform CameraFromMap(const RigidTransform& camera_from_reference, KeyframeId reference_id) const;
+  /// Ties two keyframes that a recognised place shows to be neighbours.
+  void AddLoopEdge(KeyframeId a, KeyframeId b);
   /// Drops features and observations; the pose stays, relative to the keyframe that shares most with it, where the
   /// landmarks anchored here go too. Landmarks left with fewer than two observations are removed.
   void CullKeyframe(KeyframeId id);
@@ -82,17 +101,22 @@ class SlamMap {
 
   MapChanges TakeChanges();
 
+  /// Takes over all of another map, whose ids stay what they are.
+  void Absorb(SlamMap&& other, const SimilarityTransform& this_from_other);
+
  private:
-  Keyframe& mutable_keyframe(KeyframeId id) { return *keyframes_.at(id - first_id_); }
+  Keyframe& mutable_keyframe(KeyframeId id) { return *keyframes_.Find(id); }
   void Reanchor(Landmark* landmark, KeyframeId anchor_id);
 
-  int64_t first_id_;
+  int64_t map_id_;
   PyramidScales scales_;
   CovisibilityGraph covisibility_;
-  std::vector<std::unique_ptr<Keyframe>> keyframes_;  // index = id - first_id_
-  std::vector<std::unique_ptr<Landmark>> landmarks_;  // likewise; null once removed
-  std::vector<LandmarkId> fused_into_;                // likewise; kNoId when not fused
-  int live_keyframes_ = 0, live_landmarks_ = 0;
+  IdTable<Keyframe> keyframes_;
+  IdTable<Landmark> landmarks_;
+  std::map<LandmarkId, LandmarkId> fused_into_;
+  KeyframeId last_keyframe_id_ = kNoId;
+  bool metric_scale_ = false;
+  int keyframe_count_ = 0, live_keyframes_ = 0, live_landmarks_ = 0;
   std::set<KeyframeId> changed_keyframes_;
   std::set<LandmarkId> changed_landmarks_, removed_landmarks_, reported_landmarks_;
 };

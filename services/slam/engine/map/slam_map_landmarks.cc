@@ -10,44 +10,42 @@ namespace kinemap {
 Landmark& SlamMap::CreateLandmark(const Eigen::Vector3d& position_in_map, KeyframeId anchor_id,
                                   const FeatureLabel& label) {
   auto landmark = std::make_unique<Landmark>();
-  landmark->id = first_id_ + static_cast<int64_t>(landmarks_.size());
+  landmark->id = landmarks_.NextId(map_id_);
   landmark->anchor_id = anchor_id;
-  landmark->position_in_anchor = MapFromKeyframe(anchor_id).Inverse() * position_in_map;
+  landmark->position_in_anchor = MapFromAnchor(anchor_id).Inverse() * position_in_map;
   landmark->first_keyframe_id = anchor_id;
   landmark->state = label.state;
   landmark->category = label.category;
   landmark->object_id = label.object_id;
   landmark->first_seen_ns = landmark->last_seen_ns = keyframe(anchor_id).timestamp_ns;
-  landmarks_.push_back(std::move(landmark));
-  fused_into_.push_back(kNoId);
+  Landmark& created = landmarks_.Append(map_id_, std::move(landmark));
   ++live_landmarks_;
-  MarkChanged(*landmarks_.back());
-  return *landmarks_.back();
+  MarkChanged(created);
+  return created;
 }
 
 Landmark* SlamMap::FindLandmark(LandmarkId id) {
   while (id != kNoId) {
-    const int64_t index = id - first_id_;
-    if (landmarks_[index] != nullptr) return landmarks_[index].get();
-    id = fused_into_[index];
+    Landmark* landmark = landmarks_.Find(id);
+    if (landmark != nullptr) return landmark;
+    const auto survivor = fused_into_.find(id);
+    id = survivor == fused_into_.end() ? kNoId : survivor->second;
   }
   return nullptr;
 }
 
 std::vector<LandmarkId> SlamMap::LiveLandmarks() const {
   std::vector<LandmarkId> ids;
-  for (const auto& landmark : landmarks_) {
-    if (landmark != nullptr) ids.push_back(landmark->id);
-  }
+  landmarks_.ForEach([&](const Landmark& landmark) { ids.push_back(landmark.id); });
   return ids;
 }
 
 Eigen::Vector3d SlamMap::PositionInMap(const Landmark& landmark) const {
-  return MapFromKeyframe(landmark.anchor_id) * landmark.position_in_anchor;
+  return MapFromAnchor(landmark.anchor_id) * landmark.position_in_anchor;
 }
 
 void SlamMap::SetPositionInMap(Landmark* landmark, const Eigen::Vector3d& position_in_map) {
-  landmark->position_in_anchor = MapFromKeyframe(landmark->anchor_id).Inverse() * position_in_map;
+  landmark->position_in_anchor = MapFromAnchor(landmark->anchor_id).Inverse() * position_in_map;
   MarkChanged(*landmark);
 }
 
@@ -80,12 +78,12 @@ void SlamMap::Reanchor(Landmark* landmark, KeyframeId anchor_id) {
 }
 
 void SlamMap::RemoveLandmark(LandmarkId id) {
-  std::unique_ptr<Landmark>& landmark = landmarks_[id - first_id_];
+  const Landmark* landmark = landmarks_.Find(id);
   if (landmark == nullptr) return;
   for (const auto& [keyframe_id, keypoint] : landmark->observations) {
     mutable_keyframe(keyframe_id).landmark_ids[keypoint] = kNoId;
   }
-  landmark.reset();
+  landmarks_.Remove(id);
   --live_landmarks_;
   changed_landmarks_.erase(id);
   if (reported_landmarks_.erase(id) > 0) removed_landmarks_.insert(id);
@@ -100,7 +98,7 @@ void SlamMap::FuseLandmarks(LandmarkId from_id, LandmarkId into_id) {
   into->found += from->found;
   into->first_seen_ns = std::min(into->first_seen_ns, from->first_seen_ns);
   RemoveLandmark(from_id);
-  fused_into_[from_id - first_id_] = into_id;
+  fused_into_[from_id] = into_id;
   for (const auto& [keyframe_id, keypoint] : observations) {
     if (into->observations.count(keyframe_id) == 0) Observe(into, keyframe_id, keypoint);
   }

@@ -32,12 +32,12 @@ void CameraTracker::FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id) {
   last_.reference_keyframe_id = keyframe_id;
   // With the keyframe come the landmarks it was the first to see.
   last_.landmark_ids = map.keyframe(keyframe_id).landmark_ids;
-  last_from_reference_ = last_.camera_from_map * map.MapFromKeyframe(keyframe_id);
+  last_from_reference_ = map.CameraFromReference(last_.camera_from_map, keyframe_id);
 }
 
 void CameraTracker::Remember(const SlamMap& map, const Frame& frame) {
   last_ = frame;
-  last_from_reference_ = frame.camera_from_map * map.MapFromKeyframe(frame.reference_keyframe_id);
+  last_from_reference_ = map.CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id);
 }
 
 bool CameraTracker::TrackLastFrame(const SlamMap& map, Frame* frame) const {
@@ -64,7 +64,7 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   const auto start = std::chrono::steady_clock::now();
   ++frames_since_relocalization_;
   // The mapper may have moved the keyframes since: the last frame moves with its reference.
-  last_.camera_from_map = last_from_reference_ * map->MapFromKeyframe(last_.reference_keyframe_id).Inverse();
+  last_.camera_from_map = map->CameraFromMap(last_from_reference_, last_.reference_keyframe_id);
   frame->reference_keyframe_id = map->LiveKeyframe(last_.reference_keyframe_id);
 
   bool found = false;
