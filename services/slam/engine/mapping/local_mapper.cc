@@ -32,7 +32,7 @@ void LocalMapper::MergeIfDue(SlamMap* map, int64_t frame_index) {
 }
 
 void LocalMapper::Merge(SlamMap* map) {
-  LocalBundleAdjuster::WriteBack(slot_.Take(), map);
+  WriteBackBundle(slot_.Take(), map);
   map->UpdateCovisibility(newest_);
   keyframe_culler_.Cull(map, newest_);
 }
@@ -42,11 +42,10 @@ void LocalMapper::Finish(SlamMap* map) {
   if (newest_ == kNoId) return;
   const std::vector<KeyframeId> live = map->LiveKeyframes();
   const size_t left_out = live.size() - std::min(live.size(), static_cast<size_t>(options_.final_keyframes));
-  BundleProblem problem =
-      LocalBundleAdjuster::CopyProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
+  BundleProblem problem = CopyBundleProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
   SolveBundle(camera_, options_.final_bundle, &problem);
   remaining_radial_ = problem.radial;
-  LocalBundleAdjuster::WriteBack(problem, map);
+  WriteBackBundle(problem, map);
 }
 
 }  // namespace kinemap

@@ -160,7 +160,7 @@ TEST(LocalBundleAdjuster, BringsADisturbedKeyframeBack) {
   EXPECT_EQ(moving, 3);
   EXPECT_EQ(problem.cameras.size(), 5u);
   SolveBundle(TestCamera(), {10, 10, 1e-8}, &problem);
-  LocalBundleAdjuster::WriteBack(problem, &map);
+  WriteBackBundle(problem, &map);
   EXPECT_LT((map.MapFromKeyframe(4).translation - truth.translation).norm(), 1e-3);
 }
 
