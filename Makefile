@@ -20,7 +20,7 @@ SERVE ?=
 ARGS ?=
 
 .DEFAULT_GOAL := setup
-.PHONY: setup run test test-cpp test-python lint format clean help
+.PHONY: setup run test test-cpp test-python sanitize lint format clean help
 
 help: ## what there is
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  \1\t/' | expand -t 16
@@ -39,6 +39,9 @@ test-cpp: setup
 test-python: setup
 	@echo "test: Python"
 	@$(BIN)/python -m pytest
+
+sanitize: setup ## the C++ tests under ASan and UBSan, then under TSan
+	@tests/sanitizers.sh $(JOBS)
 
 lint: setup ## ruff, mypy, clang-format, import-linter
 	@echo "lint: ruff, mypy, import-linter, clang-format"

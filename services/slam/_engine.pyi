@@ -50,6 +50,7 @@ class EngineOptions:
     merge_delay_frames: int  # 2: bundle adjustment of keyframe k is merged at frame k + 2
     local_bundle_keyframes: int  # 15 that move
     radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
+    threads: int  # 2, of feature extraction; results are the same with any number
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     map_from_first_camera: npt.NDArray[np.float64]  # (4, 4), identity

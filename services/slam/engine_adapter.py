@@ -37,6 +37,7 @@ class EngineSettings:
     merge_delay_frames: int = 2
     local_bundle_keyframes: int = 15
     radial_sigma: float = 0.01
+    threads: int = 2
     opencv_threads: int = 1
     map_id: int = 0
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
@@ -174,6 +175,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.merge_delay_frames = settings.merge_delay_frames
     options.local_bundle_keyframes = settings.local_bundle_keyframes
     options.radial_sigma = settings.radial_sigma
+    options.threads = settings.threads
     options.opencv_threads = settings.opencv_threads
     options.map_id = settings.map_id
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)

@@ -51,7 +51,7 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
     : camera_(camera),
       options_(Checked(options)),
       scales_(options.pyramid_levels, options.pyramid_factor),
-      extractor_({options.features, options.fast_threshold, options.fast_threshold_low}, scales_),
+      extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_),
       initializer_({}, camera),
       map_builder_(camera, scales_),
       tracker_({}, camera),

@@ -29,6 +29,7 @@ void EngineOptions::Check() const {
   Require(merge_delay_frames >= 1 && merge_delay_frames <= 1000, "merge_delay_frames", "1 to 1000", merge_delay_frames);
   Require(local_bundle_keyframes >= 2, "local_bundle_keyframes", "at least 2", local_bundle_keyframes);
   Require(radial_sigma >= 0 && radial_sigma <= 1, "radial_sigma", "0 to 1", radial_sigma);
+  Require(threads >= 1 && threads <= 64, "threads", "1 to 64", threads);
   Require(opencv_threads >= 0, "opencv_threads", "0 or more", opencv_threads);
   Require(map_id >= 0 && map_id < (int64_t{1} << 31), "map_id", "0 to 2^31 - 1", static_cast<double>(map_id));
   RigidTransform::FromMatrix(map_from_first_camera);

@@ -21,6 +21,7 @@ struct EngineOptions {
   int merge_delay_frames = 2;       ///< bundle adjustment of keyframe k is merged at frame k + this, at least 1
   int local_bundle_keyframes = 15;  ///< keyframes that move in a local bundle adjustment
   double radial_sigma = 0.01;       ///< distortion calibration may have left, found at the end; 0: calibration is exact
+  int threads = 2;                  ///< of feature extraction; results are the same with any number
   int opencv_threads = 1;           ///< for the whole process; 0 leaves OpenCV as it is
   int64_t map_id = 0;               ///< ids start at map_id << 32; 0 <= map_id < 2^31
   Eigen::Matrix4d map_from_first_camera = Eigen::Matrix4d::Identity();  ///< pose of the first keyframe

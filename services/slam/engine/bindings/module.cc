@@ -94,6 +94,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("merge_delay_frames", &EngineOptions::merge_delay_frames)
       .def_readwrite("local_bundle_keyframes", &EngineOptions::local_bundle_keyframes)
       .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
+      .def_readwrite("threads", &EngineOptions::threads)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("map_from_first_camera", &EngineOptions::map_from_first_camera);

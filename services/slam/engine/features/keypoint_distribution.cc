@@ -2,86 +2,113 @@
 #include "features/keypoint_distribution.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 #include <queue>
 
 namespace kinemap {
 namespace {
 
-/// A rectangle of the image and the corners inside it.
+/// A rectangle of the image and the corners inside it: a run of the order below.
 struct Part {
-  cv::Rect2f area;
-  std::vector<int> corners;
+  float x, y, width, height;
+  int begin, end;
+  int size() const { return end - begin; }
 };
 
 /// Fullest first; equally full ones by age.
 struct Urgency {
-  size_t corners;
-  size_t part;
+  int corners;
+  int part;
   bool operator<(const Urgency& other) const {
     return corners != other.corners ? corners < other.corners : part > other.part;
   }
 };
 
-std::array<Part, 4> Split(const Part& part, const std::vector<cv::KeyPoint>& corners) {
-  const float width = part.area.width / 2, height = part.area.height / 2;
-  std::array<Part, 4> quarters;
-  for (int i = 0; i < 4; ++i) {
-    quarters[i].area = {part.area.x + (i % 2) * width, part.area.y + (i / 2) * height, width, height};
+class Quadtree {
+ public:
+  explicit Quadtree(const std::vector<Corner>& corners) : corners_(corners), order_(corners.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
   }
-  const float middle_x = part.area.x + width, middle_y = part.area.y + height;
-  for (const int index : part.corners) {
-    const cv::Point2f& point = corners[index].pt;
-    quarters[(point.x >= middle_x ? 1 : 0) + (point.y >= middle_y ? 2 : 0)].corners.push_back(index);
+
+  void AddRoots(const cv::Rect& area) {
+    // Starting from squares keeps the parts square in a wide image.
+    const int count = std::max(1, static_cast<int>(std::lround(static_cast<double>(area.width) / area.height)));
+    const float width = static_cast<float>(area.width) / static_cast<float>(count);
+    int begin = 0;
+    for (int i = 0; i < count; ++i) {
+      const float right = static_cast<float>(area.x) + static_cast<float>(i + 1) * width;
+      const auto in_column = [&](int index) { return static_cast<float>(corners_[index].column) < right; };
+      const auto middle =
+          i + 1 == count ? order_.end() : std::partition(order_.begin() + begin, order_.end(), in_column);
+      const int end = static_cast<int>(middle - order_.begin());
+      Add({right - width, static_cast<float>(area.y), width, static_cast<float>(area.height), begin, end});
+      begin = end;
+    }
   }
-  return quarters;
-}
+
+  void SplitUntil(int count) {
+    while (!urgent_.empty() && occupied_ < count) {
+      const Part part = parts_[urgent_.top().part];
+      parts_[urgent_.top().part].end = part.begin;
+      urgent_.pop();
+      --occupied_;
+      const float width = part.width / 2, height = part.height / 2;
+      const float middle_x = part.x + width, middle_y = part.y + height;
+      const auto is_above = [&](int index) { return static_cast<float>(corners_[index].row) < middle_y; };
+      const auto is_left = [&](int index) { return static_cast<float>(corners_[index].column) < middle_x; };
+      const int row = Partition(part.begin, part.end, is_above);
+      const int upper = Partition(part.begin, row, is_left), lower = Partition(row, part.end, is_left);
+      Add({part.x, part.y, width, height, part.begin, upper});
+      Add({middle_x, part.y, width, height, upper, row});
+      Add({part.x, middle_y, width, height, row, lower});
+      Add({middle_x, middle_y, width, height, lower, part.end});
+    }
+  }
+
+  std::vector<Corner> StrongestOfEach() const {
+    std::vector<Corner> chosen;
+    chosen.reserve(occupied_);
+    for (const Part& part : parts_) {
+      if (part.size() == 0) continue;
+      const int best = *std::max_element(order_.begin() + part.begin, order_.begin() + part.end, [&](int a, int b) {
+        return corners_[a].score != corners_[b].score ? corners_[a].score < corners_[b].score : a > b;
+      });
+      chosen.push_back(corners_[best]);
+    }
+    return chosen;
+  }
+
+ private:
+  void Add(const Part& part) {
+    if (part.size() == 0) return;
+    ++occupied_;
+    // A part of less than a pixel cannot be split further: its corners share one place.
+    if (part.size() > 1 && part.width > 1) urgent_.push({part.size(), static_cast<int>(parts_.size())});
+    parts_.push_back(part);
+  }
+
+  /// Where the second half begins. The order within a half does not matter: ties are broken by index.
+  template <typename IsFirst>
+  int Partition(int begin, int end, IsFirst is_first) {
+    return static_cast<int>(std::partition(order_.begin() + begin, order_.begin() + end, is_first) - order_.begin());
+  }
+
+  const std::vector<Corner>& corners_;
+  std::vector<int> order_;
+  std::vector<Part> parts_;
+  std::priority_queue<Urgency> urgent_;
+  int occupied_ = 0;
+};
 
 }  // namespace
 
-std::vector<cv::KeyPoint> DistributeEvenly(const std::vector<cv::KeyPoint>& corners, const cv::Size& area_px,
-                                           int count) {
+std::vector<Corner> DistributeEvenly(const std::vector<Corner>& corners, const cv::Rect& area_px, int count) {
   if (static_cast<int>(corners.size()) <= count) return corners;
-  std::vector<Part> parts;
-  std::priority_queue<Urgency> urgent;
-  size_t occupied = 0;
-  const auto add = [&](Part part) {
-    if (part.corners.empty()) return;
-    ++occupied;
-    // A part of less than a pixel cannot be split further: its corners share one place.
-    if (part.corners.size() > 1 && part.area.width > 1) urgent.push({part.corners.size(), parts.size()});
-    parts.push_back(std::move(part));
-  };
-  // Starting from squares keeps the parts square in a wide image.
-  const int columns = std::max(1, static_cast<int>(std::lround(static_cast<double>(area_px.width) / area_px.height)));
-  const float column_width = static_cast<float>(area_px.width) / columns;
-  std::vector<Part> roots(columns);
-  for (int i = 0; i < columns; ++i)
-    roots[i].area = {i * column_width, 0, column_width, static_cast<float>(area_px.height)};
-  for (size_t i = 0; i < corners.size(); ++i) {
-    const int column = std::clamp(static_cast<int>(corners[i].pt.x / column_width), 0, columns - 1);
-    roots[column].corners.push_back(static_cast<int>(i));
-  }
-  for (Part& root : roots) add(std::move(root));
-  while (!urgent.empty() && static_cast<int>(occupied) < count) {
-    const size_t index = urgent.top().part;
-    urgent.pop();
-    std::array<Part, 4> quarters = Split(parts[index], corners);
-    parts[index].corners.clear();
-    --occupied;
-    for (Part& quarter : quarters) add(std::move(quarter));
-  }
-  std::vector<cv::KeyPoint> chosen;
-  chosen.reserve(occupied);
-  for (const Part& part : parts) {
-    if (part.corners.empty()) continue;
-    const int best = *std::max_element(part.corners.begin(), part.corners.end(), [&](int a, int b) {
-      return corners[a].response != corners[b].response ? corners[a].response < corners[b].response : a > b;
-    });
-    chosen.push_back(corners[best]);
-  }
-  return chosen;
+  Quadtree tree(corners);
+  tree.AddRoots(area_px);
+  tree.SplitUntil(count);
+  return tree.StrongestOfEach();
 }
 
 }  // namespace kinemap

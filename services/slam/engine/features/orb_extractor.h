@@ -1,39 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
 #include <vector>
 
+#include "features/corner_detector.h"
 #include "features/frame_features.h"
+#include "features/patch_orientation.h"
 #include "features/pyramid_scales.h"
+#include "features/steered_brief.h"
+#include "features/thread_team.h"
 #include "geometry/camera_model.h"
 
 namespace kinemap {
 
 struct OrbOptions {
   int features = 2000;
-  int fast_threshold = 20;     ///< grey levels a corner must differ from its circle
-  int fast_threshold_low = 7;  ///< used where a cell holds no corner at the threshold above
+  CornerThresholds thresholds;
+  int threads = 1;  ///< the caller's included; results are the same with any number
 };
 
 /// Oriented FAST corners with rotated BRIEF descriptors (Rublee et al. 2011), spread evenly over every pyramid level.
+/// Keeps its buffers from image to image; not to be used by two threads at once.
 class OrbExtractor {
  public:
   OrbExtractor(const OrbOptions& options, const PyramidScales& scales);
 
   /// `image` is 8-bit grey of the camera's size. Pixels are those of level 0, undistorted; the grid is filled.
-  FrameFeaturesPtr Extract(const cv::Mat& image, const CameraModel& camera) const;
+  FrameFeaturesPtr Extract(const cv::Mat& image, const CameraModel& camera);
 
  private:
-  std::vector<cv::KeyPoint> FindCorners(const cv::Mat& level_image, int count) const;
-  float CentroidAngleDeg(const cv::Mat& level_image, const cv::KeyPoint& corner) const;
+  struct Level {
+    explicit Level(const CornerThresholds& thresholds) : detector(thresholds) {}
+    int features = 0;
+    cv::Mat image, smoothed;
+    CornerDetector detector;
+    std::vector<Keypoint> keypoints;
+    std::vector<Descriptor> descriptors;
+  };
+  void FillPyramid(const cv::Mat& image);
+  void ExtractLevel(int octave, const CameraModel& camera);
 
-  OrbOptions options_;
   PyramidScales scales_;
-  std::vector<int> features_of_level_;
-  std::vector<int> circle_half_widths_;  // of the patch whose centroid gives the angle, one a row
-  cv::Ptr<cv::ORB> descriptor_;
+  PatchOrientation orientation_;
+  SteeredBrief brief_;
+  std::vector<Level> levels_;
+  std::unique_ptr<ThreadTeam> team_;
 };
 
 }  // namespace kinemap

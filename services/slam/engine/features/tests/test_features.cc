@@ -29,7 +29,7 @@ const CameraModel kCamera(640, 480, 500, 500, 320, 240);
 
 TEST(OrbExtractor, SpreadsTheWantedNumberOverImageAndLevels) {
   const PyramidScales scales(8, 1.2);
-  const FrameFeaturesPtr features = OrbExtractor({1000, 20, 7}, scales).Extract(Texture(640, 480), kCamera);
+  const FrameFeaturesPtr features = OrbExtractor({1000, {20, 7}}, scales).Extract(Texture(640, 480), kCamera);
   EXPECT_NEAR(features->size(), 1000, 50);
   ASSERT_EQ(features->descriptors.size(), features->keypoints.size());
   std::set<int> octaves, cells;
@@ -47,20 +47,20 @@ TEST(OrbExtractor, FindsFaintCornersWhereThereAreNoStrongOnes) {
   // The right half keeps an eighth of its contrast: corners there differ by less than the first threshold.
   cv::Mat right = image(cv::Rect(320, 0, 320, 480));
   right.convertTo(right, CV_8U, 0.125, 112);
-  const FrameFeaturesPtr features = OrbExtractor({1000, 20, 7}, {8, 1.2}).Extract(image, kCamera);
+  const FrameFeaturesPtr features = OrbExtractor({1000, {20, 7}}, {8, 1.2}).Extract(image, kCamera);
   const auto in_right_half = std::count_if(features->keypoints.begin(), features->keypoints.end(),
                                            [](const Keypoint& keypoint) { return keypoint.pixel_px.x() > 330; });
   EXPECT_GT(in_right_half, 10);
   // Without the second threshold there is none.
-  const FrameFeaturesPtr strong = OrbExtractor({1000, 20, 20}, {8, 1.2}).Extract(image, kCamera);
+  const FrameFeaturesPtr strong = OrbExtractor({1000, {20, 20}}, {8, 1.2}).Extract(image, kCamera);
   EXPECT_TRUE(std::none_of(strong->keypoints.begin(), strong->keypoints.end(),
                            [](const Keypoint& keypoint) { return keypoint.pixel_px.x() > 345; }));
 }
 
 TEST(OrbExtractor, NothingComesFromABlankOrTinyImage) {
-  EXPECT_EQ(OrbExtractor({1000, 20, 7}, {8, 1.2}).Extract(cv::Mat::zeros(480, 640, CV_8U), kCamera)->size(), 0);
+  EXPECT_EQ(OrbExtractor({1000, {20, 7}}, {8, 1.2}).Extract(cv::Mat::zeros(480, 640, CV_8U), kCamera)->size(), 0);
   const CameraModel tiny(30, 20, 20, 20, 15, 10);
-  EXPECT_EQ(OrbExtractor({1000, 20, 7}, {8, 1.2}).Extract(Texture(30, 20), tiny)->size(), 0);
+  EXPECT_EQ(OrbExtractor({1000, {20, 7}}, {8, 1.2}).Extract(Texture(30, 20), tiny)->size(), 0);
 }
 
 TEST(OrbExtractor, MatchesAnImageWithItsTurnedAndShiftedSelf) {
@@ -69,7 +69,7 @@ TEST(OrbExtractor, MatchesAnImageWithItsTurnedAndShiftedSelf) {
   cv::Mat turn = cv::getRotationMatrix2D({320, 240}, angle_deg, 1.0), turned;
   turn.at<double>(0, 2) += 6;
   cv::warpAffine(image, turned, turn, image.size());
-  const OrbExtractor extractor({1500, 20, 7}, {8, 1.2});
+  OrbExtractor extractor({1500, {20, 7}}, {8, 1.2});
   const FrameFeaturesPtr a = extractor.Extract(image, kCamera), b = extractor.Extract(turned, kCamera);
   std::vector<int> all_a(a->size()), all_b(b->size());
   for (int i = 0; i < a->size(); ++i) all_a[i] = i;
@@ -89,7 +89,7 @@ TEST(OrbExtractor, MatchesAnImageWithItsTurnedAndShiftedSelf) {
 }
 
 TEST(OrbExtractor, OneImageGivesOneSetOfBytes) {
-  const OrbExtractor extractor({1000, 20, 7}, {8, 1.2});
+  OrbExtractor extractor({1000, {20, 7}}, {8, 1.2});
   const FrameFeaturesPtr a = extractor.Extract(Texture(640, 480), kCamera);
   const FrameFeaturesPtr b = extractor.Extract(Texture(640, 480), kCamera);
   EXPECT_EQ(a->descriptors, b->descriptors);
@@ -97,7 +97,7 @@ TEST(OrbExtractor, OneImageGivesOneSetOfBytes) {
 
 TEST(OrbExtractor, UndistortsItsKeypoints) {
   const CameraModel distorted(640, 480, 500, 500, 320, 240, {-0.2, 0.05, 0, 0});
-  const FrameFeaturesPtr features = OrbExtractor({500, 20, 7}, {8, 1.2}).Extract(Texture(640, 480), distorted);
+  const FrameFeaturesPtr features = OrbExtractor({500, {20, 7}}, {8, 1.2}).Extract(Texture(640, 480), distorted);
   ASSERT_GT(features->size(), 0);
   for (const Keypoint& keypoint : features->keypoints) {
     EXPECT_LT((distorted.Distort(keypoint.pixel_px) - keypoint.raw_px).norm(), 0.01);
@@ -105,18 +105,18 @@ TEST(OrbExtractor, UndistortsItsKeypoints) {
 }
 
 TEST(KeypointDistribution, KeepsTheStrongestOfEachPart) {
-  std::vector<cv::KeyPoint> corners;
-  for (int i = 0; i < 100; ++i) corners.emplace_back(cv::Point2f(10.0f + i % 10, 10.0f + i / 10), 7, -1, i);
-  corners.emplace_back(cv::Point2f(300, 300), 7, -1, 1);
-  const std::vector<cv::KeyPoint> chosen = DistributeEvenly(corners, {640, 480}, 2);
+  std::vector<Corner> corners;
+  for (int i = 0; i < 100; ++i) corners.push_back({10 + i % 10, 10 + i / 10, i, 0, 0});
+  corners.push_back({300, 300, 1, 0, 0});
+  const std::vector<Corner> chosen = DistributeEvenly(corners, {0, 0, 640, 480}, 2);
   ASSERT_GE(chosen.size(), 2u);
-  EXPECT_TRUE(std::any_of(chosen.begin(), chosen.end(), [](const auto& corner) { return corner.response == 99; }));
-  EXPECT_TRUE(std::any_of(chosen.begin(), chosen.end(), [](const auto& corner) { return corner.pt.x == 300; }));
+  EXPECT_TRUE(std::any_of(chosen.begin(), chosen.end(), [](const Corner& corner) { return corner.score == 99; }));
+  EXPECT_TRUE(std::any_of(chosen.begin(), chosen.end(), [](const Corner& corner) { return corner.column == 300; }));
 }
 
 TEST(KeypointDistribution, EndsWhenCornersShareOnePlace) {
-  const std::vector<cv::KeyPoint> corners(50, cv::KeyPoint(100, 100, 7, -1, 1));
-  EXPECT_EQ(DistributeEvenly(corners, {640, 480}, 10).size(), 1u);
+  const std::vector<Corner> corners(50, Corner{100, 100, 1, 0, 0});
+  EXPECT_EQ(DistributeEvenly(corners, {0, 0, 640, 480}, 10).size(), 1u);
 }
 
 TEST(KeypointGrid, FindsWhatAFullSearchFinds) {
