@@ -1,60 +1,71 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run the engine alone on a KITTI odometry folder with instance masks, and print what it achieves.
+"""Run the engine alone on folders in KITTI's layout, real or made by `kinemap simulate`, and print what it achieves.
 
-python -m tests.benchmark.slam.engine_on_kitti SEQUENCE [--poses FILE] [--stage moving] [--frames N]
+python -m tests.benchmark.slam.engine_on_kitti SEQUENCE [SEQUENCE ...] [--stage moving] [--start N] [--frames N]
+    [--option seed=3] [--jobs 2] [--picture FILE.png]
 """
 
 import argparse
 import json
-from collections import Counter
 from pathlib import Path
 
-import numpy as np
+from tests.benchmark.slam.engine_pass import EnginePass, PassReport, run_passes
+from tests.benchmark.slam.sequence_part import SequencePart
+from tests.benchmark.slam.trajectory_picture import draw_trajectories
 
-from services.slam import _engine
-from tests.benchmark.slam.engine_run import TRACKING, EngineRun, run_kitti, true_centers_m
 
-
-def report(run: EngineRun, poses: Path | None) -> dict[str, object]:
-    """The run's figures."""
-    stages = [result.stage_ms for result in run.results]
-    figures: dict[str, object] = {
-        "frames": len(run.results),
-        "initialized_at": run.initialized_at(),
-        "frames_with_a_pose": len(run.relative),
-        "tracked_since_initialisation": round(run.tracked_share(), 4),
-        "keyframes": len(run.keyframes),
-        "culled": len(run.culled),
-        "landmarks_by_state": dict(sorted(Counter(run.landmarks.values()).items())),
-        "ms_p50": round(float(np.percentile(run.wall_ms, 50)), 1),
-        "ms_p95": round(float(np.percentile(run.wall_ms, 95)), 1),
-        "stage_ms_mean": {name: round(float(np.mean([stage[name] for stage in stages])), 1) for name in stages[0]},
-        "digest": run.digest.hexdigest()[:16],
+def figures(report: PassReport) -> dict[str, object]:
+    """What is printed of a pass."""
+    return {
+        "frames": report.frames,
+        "initialized_at": report.initialized_at,
+        "coverage": round(report.coverage, 4),
+        "tracked_since_initialisation": round(report.tracked_share, 4),
+        "ate_m": round(report.ate_m, 3),
+        "ate_se3_m": round(report.ate_se3_m, 3),
+        "online_ate_m": round(report.online_ate_m, 3),
+        "metres_per_unit": round(report.scale, 4),
+        "maps": report.maps,
+        "keyframes": report.keyframes,
+        "culled": report.culled,
+        "landmarks_by_state": report.landmarks,
+        "ms_p50": round(report.ms(50), 1),
+        "ms_p95": round(report.ms(95), 1),
+        "stage_ms_mean": report.stage_ms,
+        "peak_rss_mb": round(report.peak_rss_mb),
+        "digest": report.digest,
     }
-    if poses is not None:
-        figures["ate_m"] = round(run.ate_m(true_centers_m(poses)), 3)
-    return figures
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sequence", type=Path)
-    parser.add_argument("--poses", type=Path)
-    parser.add_argument("--stage", choices=["base", "dynamic", "moving"], default="moving")
+    parser.add_argument("sequences", type=Path, nargs="+")
+    parser.add_argument("--stage", action="append", choices=["base", "dynamic", "moving"])
     parser.add_argument("--images", default="image_0")
+    parser.add_argument("--start", type=int, default=0)
     parser.add_argument("--frames", type=int)
     parser.add_argument("--option", action="append", default=[], metavar="NAME=NUMBER", help="of EngineOptions")
-    arguments = parser.parse_args()
-    options = _engine.EngineOptions()
-    options.stage = getattr(_engine.Stage, arguments.stage)
-    for assignment in arguments.option:
-        name, value = assignment.split("=")
-        setattr(options, name, type(getattr(options, name))(float(value)))
-    run = run_kitti(arguments.sequence, options, images=arguments.images, frames=arguments.frames)
-    print(json.dumps(report(run, arguments.poses), indent=1))
-    for index, result in enumerate(run.results):
-        if result.state != TRACKING:
-            print(f"frame {index}: {result.reason}")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--picture", type=Path, help="PNG of the trajectories beside the truth")
+    parser.add_argument("--brief", action="store_true", help="one line a pass")
+    given = parser.parse_args()
+    options = {name: float(value) for name, value in (assignment.split("=") for assignment in given.option)}
+    passes = []
+    for sequence in given.sequences:
+        part = SequencePart(sequence, given.start, given.frames, images=given.images)
+        name = f"{sequence.resolve().parent.parent.name}/{sequence.name}"
+        passes += [EnginePass((part,), stage, options, f"{name} {stage}") for stage in given.stage or ["moving"]]
+    reports = run_passes(passes, given.jobs)
+    for report in reports:
+        if given.brief:
+            print(report.name, json.dumps(figures(report)))
+            continue
+        print(report.name, json.dumps(figures(report), indent=1))
+        for index, reason in enumerate(report.reasons):
+            if reason:
+                print(f"frame {index}: {reason}")
+    if given.picture is not None:
+        draw_trajectories(reports, given.picture)
 
 
 if __name__ == "__main__":

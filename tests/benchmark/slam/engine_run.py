@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One pass of the engine over a sequence, without a bus, and what came of it."""
+"""One pass of the engine over frames, without a bus, and what came of it."""
 
 import hashlib
 import time
+from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from schemas.codec.rigid import matrix_from_pose
-from services.evaluation.trajectory.alignment import Alignment, align
 from services.slam import _engine
-from tests.benchmark.slam.mask_objects import MaskObjects
+from tests.benchmark.slam.sequence_part import SequenceFrame, SequencePart
 
 Array = npt.NDArray[np.float64]
 
-NON_MOVING = 1
 TRACKING = 1
 FRAME_NS = 100_000_000
 
@@ -28,8 +25,10 @@ class EngineRun:
 
     engine: _engine.Engine
     relative: dict[int, tuple[int, Array]] = field(default_factory=dict)
-    """frame index -> reference keyframe, camera_from_reference"""
-    keyframes: dict[int, Array] = field(default_factory=dict)
+    """frame index -> reference keyframe, camera_from_reference in the units of what is anchored there"""
+    keyframes: dict[int, tuple[Array, float]] = field(default_factory=dict)
+    """keyframe -> map_from_keyframe, map units in a unit of what is anchored there"""
+    map_of_keyframe: dict[int, int] = field(default_factory=dict)
     culled: set[int] = field(default_factory=set)
     landmarks: dict[int, int] = field(default_factory=dict)
     """landmark -> state"""
@@ -37,14 +36,12 @@ class EngineRun:
     wall_ms: list[float] = field(default_factory=list)
     digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
 
-    def step(self, image: npt.NDArray[np.uint8], objects: MaskObjects) -> None:
-        """Track the next frame; every object counts as standing."""
-        index = len(self.results)
-        track_image, ids, categories = objects.next_frame(index)
-        states = np.full(len(ids), NON_MOVING, np.uint8)
+    def step(self, frame: SequenceFrame) -> None:
+        """Track the next frame."""
+        index, objects = len(self.results), frame.objects
         start = time.perf_counter()
-        self.engine.begin_frame((index + 1) * FRAME_NS, image)
-        result = self.engine.finish_frame(track_image, ids, categories, states, True, None)
+        self.engine.begin_frame((index + 1) * FRAME_NS, frame.image)
+        result = self.engine.finish_frame(*objects, masks_fresh=True, depth_m=None)
         self.wall_ms.append((time.perf_counter() - start) * 1e3)
         self.results.append(result)
         if result.state == TRACKING:
@@ -57,19 +54,22 @@ class EngineRun:
         self.engine.flush()
         self._take()
 
-    def centers(self) -> tuple[list[int], Array]:
-        """Indices of the frames with a pose, and their camera centres (N, 3) in the final map."""
-        indices = sorted(self.relative)
-        poses = (self.relative[index] for index in indices)
-        centers = [(self.keyframes[reference] @ np.linalg.inv(pose))[:3, 3] for reference, pose in poses]
-        return indices, np.array(centers).reshape(-1, 3)
+    def main_map(self) -> int:
+        """The map that holds most frames; 0 while there is none."""
+        maps = Counter(self.map_of_keyframe[reference] for reference, _ in self.relative.values())
+        return max(maps, key=lambda number: (maps[number], -number), default=0)
 
-    def ate_m(self, true_centers_m: Array) -> float:
-        """Root mean square error of all frames with a pose after the best similarity (Umeyama 1991)."""
-        indices, centers = self.centers()
-        truth = true_centers_m[indices]
-        aligned = align(centers, truth, Alignment.SIM3).points(centers)
-        return float(np.sqrt(((aligned - truth) ** 2).sum(axis=1).mean()))
+    def centers(self) -> tuple[list[int], Array]:
+        """Indices of the frames in the main map, and their camera centres (N, 3) as the map is now."""
+        main = self.main_map()
+        indices = [i for i, (reference, _) in sorted(self.relative.items()) if self.map_of_keyframe[reference] == main]
+        return indices, np.array([self._center(*self.relative[index]) for index in indices]).reshape(-1, 3)
+
+    def online_centers(self) -> tuple[list[int], Array]:
+        """The same as they were told at each frame, before any later correction; only frames of the main map."""
+        main = self.main_map()
+        told = [i for i, r in enumerate(self.results) if r.state == TRACKING and r.map_id == main]
+        return told, np.array([self.results[index].map_from_camera[:3, 3] for index in told]).reshape(-1, 3)
 
     def initialized_at(self) -> int:
         """Index of the first frame with a pose of its own; -1 when there is none."""
@@ -80,12 +80,20 @@ class EngineRun:
         after = self.results[max(self.initialized_at(), 0) :]
         return sum(result.state == TRACKING for result in after) / len(after)
 
+    def _center(self, reference: int, camera_from_reference: Array) -> Array:
+        map_from_keyframe, scale = self.keyframes[reference]
+        in_reference = np.linalg.inv(camera_from_reference)[:3, 3]
+        center: Array = map_from_keyframe[:3, :3] @ (scale * in_reference) + map_from_keyframe[:3, 3]
+        return center
+
     def _take(self) -> None:
         update = self.engine.take_map_update()
         for name in sorted(update):
             self.digest.update(update[name].tobytes())
         for row, number in enumerate(update["keyframe_id"].tolist()):
-            self.keyframes[number] = matrix_from_pose(update["keyframe_pose"][row])
+            pose = update["keyframe_pose"][row]
+            self.keyframes[number] = matrix_from_pose(pose[:7]), float(pose[7])
+            self.map_of_keyframe[number] = int(update["keyframe_map_id"][row])
             if update["keyframe_culled"][row]:
                 self.culled.add(number)
         self.landmarks.update(zip(update["landmark_id"].tolist(), update["landmark_state"].tolist(), strict=True))
@@ -97,28 +105,16 @@ class EngineRun:
             self.relative[timestamp_ns // FRAME_NS - 1] = (reference, pose)
 
 
-def run_kitti(
-    sequence: Path, options: _engine.EngineOptions, *, images: str = "image_0", frames: int | None = None
-) -> EngineRun:
-    """Run a folder in KITTI's layout with `instances/` beside the images."""
-    line = next(line for line in (sequence / "calib.txt").read_text().splitlines() if line.startswith("P0"))
-    p = np.array(line.split()[1:], float).reshape(3, 4)
-    paths = sorted((sequence / images).iterdir())[:frames]
-    objects = MaskObjects(sequence / "instances", [path.stem for path in paths])
+def run_parts(parts: tuple[SequencePart, ...], options: _engine.EngineOptions) -> EngineRun:
+    """Show the engine one part after the other, as one input; the camera is the first part's."""
     run: EngineRun | None = None
-    for path in paths:
-        image = np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
-        if run is None:
-            height, width = image.shape
-            camera = _engine.CameraModel(width, height, p[0, 0], p[1, 1], p[0, 2], p[1, 2])
-            run = EngineRun(_engine.Engine(camera, options))
-        run.step(image, objects)
+    for part in parts:
+        for frame in part.read():
+            if run is None:
+                height, width = frame.image.shape
+                run = EngineRun(_engine.Engine(_engine.CameraModel(width, height, *part.intrinsics()), options))
+            run.step(frame)
     if run is None:
-        raise FileNotFoundError(f"{sequence / images}: no images")
+        raise FileNotFoundError(f"{parts[0].folder}: no frame from number {parts[0].start} on")
     run.finish()
     return run
-
-
-def true_centers_m(poses: Path) -> Array:
-    """Camera centres (N, 3) of a KITTI pose file."""
-    return np.loadtxt(poses).reshape(-1, 3, 4)[:, :, 3]

@@ -9,26 +9,29 @@ import numpy as np
 import numpy.typing as npt
 
 from schemas.categories import category_id
+from tests.benchmark.slam.frame_objects import FrameObjects, MotionCode
 
 
 class MaskObjects:
-    """Reads label images and instances.json and keeps an instance's id from frame to frame by greatest overlap."""
+    """Reads label images and instances.json and keeps an instance's id from frame to frame by greatest overlap.
 
-    def __init__(self, folder: Path, frame_names: list[str], least_iou: float = 0.3) -> None:
+    Who moves is not known: every object counts as standing.
+    """
+
+    def __init__(self, folder: Path, least_iou: float = 0.3) -> None:
         self._folder = folder
-        self._names = frame_names
         self._rows = json.loads((folder / "instances.json").read_text())
         self._least_iou = least_iou
         self._previous: npt.NDArray[np.uint32] | None = None
         self._newest_id = 0
 
-    def next_frame(self, index: int) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], npt.NDArray[np.int32]]:
-        """Track image (height, width), ids (N,) and categories (N,) of one frame; call in the order of the frames."""
-        labels = cv2.imread(str(self._folder / f"{self._names[index]}.png"), cv2.IMREAD_UNCHANGED)
+    def at(self, name: str) -> FrameObjects:
+        """The objects of the frame of this name; ask in the order of the frames."""
+        labels = cv2.imread(str(self._folder / f"{name}.png"), cv2.IMREAD_UNCHANGED)
         track_image = np.zeros(labels.shape, np.uint32)
         ids: list[int] = []
         categories: list[int] = []
-        for row in self._rows[self._names[index]]:
+        for row in self._rows[name]:
             mask = labels == row["id"]
             if not mask.any():
                 continue
@@ -37,7 +40,8 @@ class MaskObjects:
             ids.append(number)
             categories.append(category_id(row["category"]))
         self._previous = track_image
-        return track_image, np.array(ids, np.uint32), np.array(categories, np.int32)
+        states = np.full(len(ids), MotionCode.NON_MOVING, np.uint8)
+        return FrameObjects(track_image, np.array(ids, np.uint32), np.array(categories, np.int32), states)
 
     def _id_by_overlap(self, mask: npt.NDArray[np.bool_], taken: list[int]) -> int:
         if self._previous is not None:

@@ -89,13 +89,16 @@ void SlamMap::CullKeyframe(KeyframeId id) {
     Landmark* landmark = FindLandmark(landmark_id);
     if (landmark != nullptr) EraseObservation(landmark, id);
   }
-  landmarks_.ForEach([&](const Landmark& landmark) {
-    if (landmark.anchor_id == id) Reanchor(FindLandmark(landmark.id), keyframe.parent_id);
-  });
+  for (const LandmarkId landmark_id : keyframe.anchored) {
+    Landmark* landmark = landmarks_.Find(landmark_id);
+    if (landmark != nullptr && landmark->anchor_id == id) Reanchor(landmark, keyframe.parent_id);
+  }
+  keyframe.anchored = {};
+  mutable_keyframe(keyframe.parent_id).culled_children.push_back(id);
   covisibility_.Remove(id);
   keyframe.features.reset();
-  keyframe.labels.clear();
-  keyframe.landmark_ids.clear();
+  keyframe.labels = {};
+  keyframe.landmark_ids = {};
   keyframe.culled = true;
   --live_keyframes_;
   changed_keyframes_.insert(id);
@@ -135,12 +138,19 @@ double SlamMap::MedianDepth(KeyframeId id) const {
 }
 
 MapChanges SlamMap::TakeChanges() {
-  keyframes_.ForEach([&](const Keyframe& keyframe) {
-    // The pose of a culled keyframe changes with any of its parents'. Parents may be younger, so follow the chain.
-    if (keyframe.culled && changed_keyframes_.count(LiveKeyframe(keyframe.id)) > 0) {
-      changed_keyframes_.insert(keyframe.id);
+  // The pose of a culled keyframe changes with that of the live one it hangs on.
+  std::vector<KeyframeId> moved;
+  for (const KeyframeId id : changed_keyframes_) {
+    if (!keyframe(id).culled) moved.push_back(id);
+  }
+  while (!moved.empty()) {
+    const KeyframeId id = moved.back();
+    moved.pop_back();
+    for (const KeyframeId child : keyframe(id).culled_children) {
+      changed_keyframes_.insert(child);
+      moved.push_back(child);
     }
-  });
+  }
   MapChanges changes;
   changes.keyframes.assign(changed_keyframes_.begin(), changed_keyframes_.end());
   changes.landmarks.assign(changed_landmarks_.begin(), changed_landmarks_.end());
@@ -164,6 +174,10 @@ void SlamMap::Absorb(SlamMap&& other, const SimilarityTransform& this_from_other
   fused_into_.merge(other.fused_into_);
   changed_landmarks_.merge(other.changed_landmarks_);
   removed_landmarks_.merge(other.removed_landmarks_);
+  for (auto& [object_id, ids] : other.landmarks_of_object_) {
+    std::vector<LandmarkId>& all = landmarks_of_object_[object_id];
+    all.insert(all.end(), ids.begin(), ids.end());
+  }
   reported_landmarks_.merge(other.reported_landmarks_);
   last_keyframe_id_ = std::max(last_keyframe_id_, other.last_keyframe_id_);
   keyframe_count_ += other.keyframe_count_;

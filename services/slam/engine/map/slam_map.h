@@ -78,6 +78,8 @@ class SlamMap {
   int landmark_count() const { return live_landmarks_; }
   /// Ids of all landmarks that were not removed, ascending.
   std::vector<LandmarkId> LiveLandmarks() const;
+  /// Landmarks that are, or once were, of an object, removed ones among them; in the order in which they became so.
+  const std::vector<LandmarkId>& LandmarksOfObject(uint32_t object_id) const;
   Eigen::Vector3d PositionInMap(const Landmark& landmark) const;
   void SetPositionInMap(Landmark* landmark, const Eigen::Vector3d& position_in_map);
   void Observe(Landmark* landmark, KeyframeId keyframe_id, int keypoint);
@@ -107,6 +109,7 @@ class SlamMap {
  private:
   Keyframe& mutable_keyframe(KeyframeId id) { return *keyframes_.Find(id); }
   void Reanchor(Landmark* landmark, KeyframeId anchor_id);
+  void SetObject(Landmark* landmark, const FeatureLabel& label);
 
   int64_t map_id_;
   PyramidScales scales_;
@@ -114,6 +117,7 @@ class SlamMap {
   IdTable<Keyframe> keyframes_;
   IdTable<Landmark> landmarks_;
   std::map<LandmarkId, LandmarkId> fused_into_;
+  std::map<uint32_t, std::vector<LandmarkId>> landmarks_of_object_;
   KeyframeId last_keyframe_id_ = kNoId;
   bool metric_scale_ = false;
   int keyframe_count_ = 0, live_keyframes_ = 0, live_landmarks_ = 0;

@@ -14,10 +14,9 @@ Landmark& SlamMap::CreateLandmark(const Eigen::Vector3d& position_in_map, Keyfra
   landmark->anchor_id = anchor_id;
   landmark->position_in_anchor = MapFromAnchor(anchor_id).Inverse() * position_in_map;
   landmark->first_keyframe_id = anchor_id;
-  landmark->state = label.state;
-  landmark->category = label.category;
-  landmark->object_id = label.object_id;
   landmark->first_seen_ns = landmark->last_seen_ns = keyframe(anchor_id).timestamp_ns;
+  mutable_keyframe(anchor_id).anchored.push_back(landmark->id);
+  SetObject(landmark.get(), label);
   Landmark& created = landmarks_.Append(map_id_, std::move(landmark));
   ++live_landmarks_;
   MarkChanged(created);
@@ -38,6 +37,20 @@ std::vector<LandmarkId> SlamMap::LiveLandmarks() const {
   std::vector<LandmarkId> ids;
   landmarks_.ForEach([&](const Landmark& landmark) { ids.push_back(landmark.id); });
   return ids;
+}
+
+void SlamMap::SetObject(Landmark* landmark, const FeatureLabel& label) {
+  const bool is_new = label.object_id != 0 && landmark->object_id != label.object_id;
+  if (is_new) landmarks_of_object_[label.object_id].push_back(landmark->id);
+  landmark->state = label.state;
+  landmark->category = label.category;
+  landmark->object_id = label.object_id;
+}
+
+const std::vector<LandmarkId>& SlamMap::LandmarksOfObject(uint32_t object_id) const {
+  static const std::vector<LandmarkId> kNone;
+  const auto found = landmarks_of_object_.find(object_id);
+  return found == landmarks_of_object_.end() ? kNone : found->second;
 }
 
 Eigen::Vector3d SlamMap::PositionInMap(const Landmark& landmark) const {
@@ -74,6 +87,7 @@ void SlamMap::EraseObservation(Landmark* landmark, KeyframeId keyframe_id) {
 void SlamMap::Reanchor(Landmark* landmark, KeyframeId anchor_id) {
   const Eigen::Vector3d position_in_map = PositionInMap(*landmark);
   landmark->anchor_id = anchor_id;
+  mutable_keyframe(anchor_id).anchored.push_back(landmark->id);
   SetPositionInMap(landmark, position_in_map);
 }
 
@@ -153,9 +167,7 @@ void SlamMap::UpdateLabel(Landmark* landmark) {
   for (const auto& [keyframe_id, keypoint] : landmark->observations) {
     const FeatureLabel& label = keyframe(keyframe_id).labels[keypoint];
     if (label.object_id != winner) continue;
-    landmark->state = label.state;
-    landmark->object_id = label.object_id;
-    landmark->category = label.category;
+    SetObject(landmark, label);
   }
 }
 

@@ -18,6 +18,9 @@ class ObjectStates {
   int Update(const std::vector<ObjectRow>& rows, int64_t timestamp_ns, SlamMap* map);
 
  private:
+  static int End(uint32_t object_id, int64_t timestamp_ns, SlamMap* map);
+  static void Decide(uint32_t object_id, SlamMap* map);
+
   std::map<uint32_t, MotionState> state_of_object_;
 };
 

@@ -222,11 +222,11 @@ TEST(MovingLandmarkPlacer, PlacesByDepthInMapUnits) {
 TEST(ObjectStates, EndAndReleaseLandmarks) {
   const Scene scene(60, 2, 6, 10);
   SlamMap map = MapOf(scene, TestCamera(), Row(3, 0.3));
-  const std::vector<LandmarkId> ids = map.LiveLandmarks();
-  Landmark* parked = map.FindLandmark(ids[0]);
-  parked->object_id = 1, parked->state = MotionState::kNonMoving;
-  Landmark* unclear = map.FindLandmark(ids[1]);
-  unclear->object_id = 2, unclear->state = MotionState::kUndecided;
+  const auto on_object = [&](uint32_t object_id, MotionState state) {
+    return &map.CreateLandmark({0, 0, 5}, map.first_keyframe_id(), {FeatureRole::kMapped, state, object_id, 3});
+  };
+  Landmark* parked = on_object(1, MotionState::kNonMoving);
+  Landmark* unclear = on_object(2, MotionState::kUndecided);
   ObjectStates states;
   EXPECT_EQ(states.Update({{1, 3, MotionState::kNonMoving}, {2, 3, MotionState::kUndecided}}, 100, &map), 0);
   EXPECT_TRUE(parked->IsTrackable());
