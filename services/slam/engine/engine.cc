@@ -57,7 +57,8 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       tracker_({}, camera),
       keyframe_policy_({}),
       mapper_(MapperOptions(options), camera),
-      atlas_(options.map_id, scales_) {
+      atlas_(options.map_id, scales_),
+      places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -108,6 +109,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
     }
     Track(&frame, depth_m, &result);
   }
+  if (map() != nullptr) places_.Follow(map());
   result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
 }
