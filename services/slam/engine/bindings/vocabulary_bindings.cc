@@ -32,8 +32,8 @@ std::vector<Descriptor> Descriptors(const DescriptorArray& array) {
 py::tuple DescriptorsOf(const py::array& image, const EngineOptions& options) {
   const cv::Mat view = ImageView<uint8_t>("image", image, CV_8U);
   const CameraModel camera(view.cols, view.rows, view.cols, view.cols, 0.5 * view.cols, 0.5 * view.rows);
-  const OrbExtractor extractor({options.features, options.fast_threshold, options.fast_threshold_low},
-                               PyramidScales(options.pyramid_levels, options.pyramid_factor));
+  OrbExtractor extractor({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads},
+                         PyramidScales(options.pyramid_levels, options.pyramid_factor));
   FrameFeaturesPtr features;
   {
     const py::gil_scoped_release release;
