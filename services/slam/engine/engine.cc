@@ -30,6 +30,12 @@ const EngineOptions& Checked(const EngineOptions& options) {
   return options;
 }
 
+CameraTrackerOptions TrackerOptions(const EngineOptions& options) {
+  CameraTrackerOptions tracker;
+  tracker.relocalizer.seed = options.seed;
+  return tracker;
+}
+
 LocalMapperOptions MapperOptions(const EngineOptions& options) {
   LocalMapperOptions mapper;
   mapper.merge_delay_frames = options.merge_delay_frames;
@@ -54,7 +60,7 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_),
       initializer_({}, camera),
       map_builder_(camera, scales_),
-      tracker_({}, camera),
+      tracker_(TrackerOptions(options), camera, &places_),
       keyframe_policy_({}),
       mapper_(MapperOptions(options), camera),
       atlas_(options.map_id, scales_),
