@@ -18,6 +18,7 @@ from services.cli.run import run
 from services.cli.simulate import simulate
 from services.cli.status import status
 from services.cli.thesis.app import thesis_app
+from services.cli.train.app import train_app
 from services.cli.up import up
 from services.runtime.errors import KinemapError
 
@@ -36,6 +37,7 @@ app.add_typer(config_app, name="config")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(thesis_app, name="thesis")
 app.add_typer(dataset_app, name="dataset")
+app.add_typer(train_app, name="train")
 app.command()(doctor)
 
 

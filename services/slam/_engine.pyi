@@ -53,6 +53,7 @@ class EngineOptions:
     threads: int  # 2, of feature extraction; results are the same with any number
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
+    vocabulary_path: str  # "": places are not recognised, but for those nearby
     map_from_first_camera: npt.NDArray[np.float64]  # (4, 4), identity
     def __init__(self) -> None: ...
 
@@ -95,6 +96,45 @@ class TrackingResult:
     @property
     def stage_ms(self) -> dict[str, float]:
         """Wall-clock milliseconds: extract, merge, match, local_map, mapping."""
+
+class BagOfWords:
+    """What an image shows, in words of a vocabulary."""
+
+    @property
+    def words(self) -> list[tuple[int, float]]:
+        """Word and weight, ascending by word; the weights add up to 1."""
+    @property
+    def node_of_keypoint(self) -> list[int]:
+        """The node of the tree's upper levels that each keypoint falls under; 0 for those left out."""
+    def similarity(self, other: BagOfWords) -> float:
+        """L1 score in [0, 1]."""
+
+class Vocabulary:
+    """A tree of binary descriptors whose leaves are words."""
+
+    @staticmethod
+    def load(path: str) -> Vocabulary:
+        """ValueError names the file and what is wrong with it."""
+    @staticmethod
+    def train(
+        descriptors: npt.NDArray[np.uint8],
+        image_of_descriptor: npt.NDArray[np.int32],
+        branching: int,
+        depth: int,
+        seed: int,
+    ) -> Vocabulary:
+        """Of (n, 32) descriptors, whose images' numbers (n,) ascend. ValueError for a number out of its range."""
+    def save(self, path: str) -> None:
+        """RuntimeError when the file cannot be written."""
+    @property
+    def word_count(self) -> int: ...
+    def describe(self, descriptors: npt.NDArray[np.uint8]) -> BagOfWords:
+        """The bag of (n, 32) descriptors."""
+
+def descriptors_of(
+    image: npt.NDArray[np.uint8], options: EngineOptions
+) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float64]]:
+    """The engine's features of a grey image: descriptors (n, 32) and raw pixels (n, 2)."""
 
 class Engine:
     """Monocular SLAM frame by frame. The GIL is released while it works; calls from several threads take turns."""

@@ -18,6 +18,7 @@ from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingSt
 from services.runtime.errors import InputError
 from services.slam import _engine
 from services.slam.depth_scale import DepthScale
+from services.slam.vocabulary import SHIPPED_VOCABULARY
 
 Stage = Literal["base", "dynamic", "moving"]
 
@@ -40,6 +41,7 @@ class EngineSettings:
     threads: int = 2
     opencv_threads: int = 1
     map_id: int = 0
+    vocabulary_path: str = str(SHIPPED_VOCABULARY)
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
     """(7,) tx ty tz qx qy qz qw; a level camera in a map with x forward, y left, z up (REP-103) unless given"""
 
@@ -178,6 +180,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.threads = settings.threads
     options.opencv_threads = settings.opencv_threads
     options.map_id = settings.map_id
+    options.vocabulary_path = settings.vocabulary_path
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)
     return options
 

@@ -30,6 +30,12 @@ const EngineOptions& Checked(const EngineOptions& options) {
   return options;
 }
 
+CameraTrackerOptions TrackerOptions(const EngineOptions& options) {
+  CameraTrackerOptions tracker;
+  tracker.relocalizer.seed = options.seed;
+  return tracker;
+}
+
 LocalMapperOptions MapperOptions(const EngineOptions& options) {
   LocalMapperOptions mapper;
   mapper.merge_delay_frames = options.merge_delay_frames;
@@ -54,10 +60,11 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_),
       initializer_({}, camera),
       map_builder_(camera, scales_),
-      tracker_({}, camera),
+      tracker_(TrackerOptions(options), camera, &places_),
       keyframe_policy_({}),
       mapper_(MapperOptions(options), camera),
-      atlas_(options.map_id, scales_) {
+      atlas_(options.map_id, scales_),
+      places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -108,6 +115,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
     }
     Track(&frame, depth_m, &result);
   }
+  if (map() != nullptr) places_.Follow(map());
   result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
 }

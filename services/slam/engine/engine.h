@@ -9,6 +9,7 @@
 #include "engine_options.h"
 #include "features/orb_extractor.h"
 #include "map/atlas.h"
+#include "map/place_index.h"
 #include "map_update.h"
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
@@ -31,7 +32,7 @@ struct FrameObjects {
 /// called from two threads at once.
 class Engine {
  public:
-  /// Throws std::invalid_argument when an option is out of its range.
+  /// Throws std::invalid_argument when an option is out of its range or the vocabulary cannot be read.
   Engine(const CameraModel& camera, const EngineOptions& options);
 
   /// Extracts the features of an 8-bit grey image of the camera's size. A frame begun but not finished is replaced.
@@ -73,6 +74,7 @@ class Engine {
   LocalMapper mapper_;
   ObjectStates object_states_;
   Atlas atlas_;
+  PlaceIndex places_;  // of the keyframes of all maps
 
   struct BegunFrame {
     int64_t timestamp_ns;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 
 #include "features/object_labels.h"
 
@@ -24,6 +25,7 @@ struct EngineOptions {
   int threads = 2;                  ///< of feature extraction; results are the same with any number
   int opencv_threads = 1;           ///< for the whole process; 0 leaves OpenCV as it is
   int64_t map_id = 0;               ///< ids start at map_id << 32; 0 <= map_id < 2^31
+  std::string vocabulary_path;      ///< of the places' words; empty: no place is recognised but by its looks nearby
   Eigen::Matrix4d map_from_first_camera = Eigen::Matrix4d::Identity();  ///< pose of the first keyframe
 
   /// Throws std::invalid_argument that names the option and its value.

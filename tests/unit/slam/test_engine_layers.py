@@ -9,8 +9,9 @@ import pytest
 ENGINE = Path(__file__).resolve().parents[3] / "services" / "slam" / "engine"
 
 BELOW = {
+    "files": set[str](),
     "geometry": set[str](),
-    "features": {"geometry"},
+    "features": {"files", "geometry"},
     "map": {"geometry", "features"},
     "optimization": {"geometry", "features", "map"},
     "tracking": {"geometry", "features", "map", "optimization"},

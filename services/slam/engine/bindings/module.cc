@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bindings/array_conversion.h"
+#include "bindings/vocabulary_bindings.h"
 #include "engine.h"
 
 namespace py = pybind11;
@@ -97,6 +98,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("threads", &EngineOptions::threads)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
+      .def_readwrite("vocabulary_path", &EngineOptions::vocabulary_path)
       .def_readwrite("map_from_first_camera", &EngineOptions::map_from_first_camera);
 }
 
@@ -135,6 +137,7 @@ PYBIND11_MODULE(_engine, module) {
   module.doc() = "Monocular SLAM: images and object masks in, poses and map arrays out.";
   BindOptions(module);
   BindResult(module);
+  BindVocabulary(module);
   py::class_<LockedEngine>(module, "Engine")
       .def(py::init<const CameraModel&, const EngineOptions&>(), py::arg("camera"), py::arg("options"))
       .def("begin_frame", &LockedEngine::BeginFrame, py::arg("timestamp_ns"), py::arg("image"))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace kinemap {
 
@@ -20,6 +21,7 @@ Keyframe& SlamMap::InsertKeyframe(const Frame& frame) {
   ++keyframe_count_;
   ++live_keyframes_;
   changed_keyframes_.insert(inserted.id);
+  turnover_.inserted.push_back(inserted.id);
   for (int i = 0; i < frame.size(); ++i) {
     Landmark* landmark = FindLandmark(frame.landmark_ids[i]);
     if (landmark == nullptr || landmark->observations.count(inserted.id) > 0) continue;
@@ -102,6 +104,7 @@ void SlamMap::CullKeyframe(KeyframeId id) {
   keyframe.culled = true;
   --live_keyframes_;
   changed_keyframes_.insert(id);
+  turnover_.culled.push_back(id);
 }
 
 void SlamMap::UpdateCovisibility(KeyframeId id) {
@@ -162,6 +165,8 @@ MapChanges SlamMap::TakeChanges() {
   return changes;
 }
 
+KeyframeTurnover SlamMap::TakeTurnover() { return std::exchange(turnover_, {}); }
+
 void SlamMap::Absorb(SlamMap&& other, const SimilarityTransform& this_from_other) {
   const std::vector<KeyframeId> moved = other.LiveKeyframes();
   for (const KeyframeId id : moved) {
@@ -179,6 +184,9 @@ void SlamMap::Absorb(SlamMap&& other, const SimilarityTransform& this_from_other
     all.insert(all.end(), ids.begin(), ids.end());
   }
   reported_landmarks_.merge(other.reported_landmarks_);
+  const KeyframeTurnover turnover = other.TakeTurnover();
+  turnover_.inserted.insert(turnover_.inserted.end(), turnover.inserted.begin(), turnover.inserted.end());
+  turnover_.culled.insert(turnover_.culled.end(), turnover.culled.begin(), turnover.culled.end());
   last_keyframe_id_ = std::max(last_keyframe_id_, other.last_keyframe_id_);
   keyframe_count_ += other.keyframe_count_;
   live_keyframes_ += other.live_keyframes_;

@@ -23,6 +23,11 @@ struct MapChanges {
   std::vector<LandmarkId> removed_landmarks;
 };
 
+/// Keyframes that came and went since it was last asked, in that order.
+struct KeyframeTurnover {
+  std::vector<KeyframeId> inserted, culled;
+};
+
 /// Keyframes, landmarks and what ties them together. Landmarks sit in the frame of their anchor keyframe, so that
 /// moving a keyframe moves them too. One thread at a time.
 class SlamMap {
@@ -102,6 +107,7 @@ class SlamMap {
   double MedianDepth(KeyframeId id) const;
 
   MapChanges TakeChanges();
+  KeyframeTurnover TakeTurnover();
 
   /// Takes over all of another map, whose ids stay what they are.
   void Absorb(SlamMap&& other, const SimilarityTransform& this_from_other);
@@ -119,6 +125,7 @@ class SlamMap {
   std::map<LandmarkId, LandmarkId> fused_into_;
   std::map<uint32_t, std::vector<LandmarkId>> landmarks_of_object_;
   KeyframeId last_keyframe_id_ = kNoId;
+  KeyframeTurnover turnover_;
   bool metric_scale_ = false;
   int keyframe_count_ = 0, live_keyframes_ = 0, live_landmarks_ = 0;
   std::set<KeyframeId> changed_keyframes_;

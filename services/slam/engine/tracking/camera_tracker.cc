@@ -18,8 +18,12 @@ double MillisecondsSince(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-CameraTracker::CameraTracker(const CameraTrackerOptions& options, const CameraModel& camera)
-    : options_(options), camera_(camera), solver_(camera), local_map_tracker_(camera), relocalizer_(camera) {}
+CameraTracker::CameraTracker(const CameraTrackerOptions& options, const CameraModel& camera, const PlaceIndex* places)
+    : options_(options),
+      camera_(camera),
+      solver_(camera),
+      local_map_tracker_(camera),
+      relocalizer_(options.relocalizer, camera, places) {}
 
 void CameraTracker::Start(const SlamMap& map, const Frame& frame, const std::optional<RigidTransform>& previous) {
   motion_model_.Reset();

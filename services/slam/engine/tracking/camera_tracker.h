@@ -20,6 +20,7 @@ struct CameraTrackerOptions {
   int min_local_inliers = 30;        ///< of the final pose
   int min_relocalized_inliers = 50;  ///< the same while the last relocalisation is recent
   int recent_frames = 10;
+  RelocalizerOptions relocalizer;
 };
 
 struct TrackedPose {
@@ -34,7 +35,8 @@ struct TrackedPose {
 /// the local map.
 class CameraTracker {
  public:
-  CameraTracker(const CameraTrackerOptions& options, const CameraModel& camera);
+  /// `places` helps a lost camera; it may be null, and must outlive this.
+  CameraTracker(const CameraTrackerOptions& options, const CameraModel& camera, const PlaceIndex* places = nullptr);
 
   /// Fills in the frame's pose, matches and reference keyframe.
   TrackedPose Track(SlamMap* map, Frame* frame);

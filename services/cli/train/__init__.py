@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`kinemap train`: makes what the services ship or load."""

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/static_search.h"
+
+#include <set>
+
+#include "map/landmark_search.h"
+
+namespace kinemap {
+namespace {
+
+constexpr double kRatio = 0.9;
+
+}  // namespace
+
+std::vector<LandmarkId> StaticLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<LandmarkId> landmarks;
+  std::set<LandmarkId> seen;
+  for (const KeyframeId keyframe_id : keyframes) {
+    for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
+      const Landmark* landmark = map.FindLandmark(id);
+      if (landmark == nullptr || !IsLasting(*landmark)) continue;
+      if (seen.insert(landmark->id).second) landmarks.push_back(landmark->id);
+    }
+  }
+  return landmarks;
+}
+
+int ProjectStaticLandmarks(const SlamMap& map, const CameraModel& camera, const std::vector<LandmarkId>& landmarks,
+                           double radius_px, int max_distance, Frame* frame) {
+  const std::set<LandmarkId> already(frame->landmark_ids.begin(), frame->landmark_ids.end());
+  const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
+  KeypointSearch search;
+  int added = 0;
+  for (const LandmarkId id : landmarks) {
+    if (already.count(id) > 0) continue;
+    const Landmark* landmark = map.FindLandmark(id);
+    const auto view =
+        PredictView(*landmark, map.PositionInMap(*landmark), frame->camera_from_map, center, camera, map.scales());
+    if (!view) continue;
+    const SearchWindow window{view->pixel_px, radius_px * map.scales().scale(view->octave), view->octave - 1,
+                              view->octave + 1};
+    const int best = search.FindBest(*frame->features, landmark->descriptor, window, max_distance, kRatio,
+                                     [&](int keypoint) { return frame->IsFree(keypoint); });
+    if (best < 0) continue;
+    frame->landmark_ids[best] = id;
+    ++added;
+  }
+  return added;
+}
+
+}  // namespace kinemap
