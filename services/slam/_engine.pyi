@@ -51,6 +51,7 @@ class EngineOptions:
     local_bundle_keyframes: int  # 15 that move
     radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
     threads: int  # 2, of feature extraction; results are the same with any number
+    loop_closing: bool  # True: recognises places seen before; needs a vocabulary
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
@@ -94,8 +95,14 @@ class TrackingResult:
     def metric_scale(self) -> bool:
         """Whether map units are metres."""
     @property
+    def loop_closed(self) -> bool:
+        """A place of this map was recognised; many keyframes moved."""
+    @property
+    def maps_merged(self) -> bool:
+        """A place of another map was recognised; map_id may have changed."""
+    @property
     def stage_ms(self) -> dict[str, float]:
-        """Wall-clock milliseconds: extract, merge, match, local_map, mapping."""
+        """Wall-clock ms: extract, merge, match, local_map, mapping, loop; background: solving beside tracking."""
 
 class BagOfWords:
     """What an image shows, in words of a vocabulary."""

@@ -44,6 +44,12 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   return mapper;
 }
 
+LoopCloserOptions ClosingOptions(const EngineOptions& options) {
+  LoopCloserOptions closer;
+  closer.seed = options.seed;
+  return closer;
+}
+
 void CheckSize(const char* name, const cv::Mat& image, const CameraModel& camera) {
   if (image.cols == camera.width_px() && image.rows == camera.height_px()) return;
   throw std::invalid_argument(std::string(name) + ": expected " + std::to_string(camera.width_px()) + "x" +
@@ -64,7 +70,8 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       keyframe_policy_({}),
       mapper_(MapperOptions(options), camera),
       atlas_(options.map_id, scales_),
-      places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)) {
+      places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
+      loop_closer_(ClosingOptions(options), camera) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -110,12 +117,14 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
     const Stopwatch stopwatch;
     mapper_.MergeIfDue(map(), frame_index_);
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
+    MergeLoops(&result);
     if (options_.stage == Stage::kMoving && objects.masks_fresh) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, depth_m, &result);
   }
   if (map() != nullptr) places_.Follow(map());
+  LookForLoops(frame, &result);
   result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
 }
@@ -200,6 +209,25 @@ void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result)
   ReportPose(*frame, pose.estimate.information, result);
 }
 
+void Engine::MergeLoops(TrackingResult* result) {
+  if (!loop_closer_.IsDue(frame_index_)) return;
+  const Stopwatch stopwatch;
+  mapper_.Settle(map());
+  const LoopEvents events = loop_closer_.Merge(&atlas_, frame_index_);
+  result->loop_closed = events.loops_closed > 0;
+  result->maps_merged = events.maps_merged > 0;
+  result->map_id = atlas_.active_map_id();
+  result->stage_ms.loop_ms = stopwatch.ElapsedMs();
+  result->stage_ms.background_ms = events.background_ms;
+}
+
+void Engine::LookForLoops(const Frame& frame, TrackingResult* result) {
+  if (!options_.loop_closing || !places_.has_vocabulary() || !result->keyframe_inserted) return;
+  const Stopwatch stopwatch;
+  loop_closer_.Look(&atlas_, places_, frame.reference_keyframe_id, frame_index_);
+  result->stage_ms.loop_ms += stopwatch.ElapsedMs();
+}
+
 bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
   TrackingQuality quality;
   quality.frames_since_relocalization = tracker_.frames_since_relocalization();
@@ -222,7 +250,10 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 }
 
 void Engine::Flush() {
-  if (map() != nullptr) mapper_.Finish(map());
+  if (map() == nullptr) return;
+  mapper_.Settle(map());
+  loop_closer_.Settle(&atlas_);
+  mapper_.Finish(map());
 }
 
 MapUpdate Engine::TakeUpdate() {

@@ -8,6 +8,7 @@
 
 #include "engine_options.h"
 #include "features/orb_extractor.h"
+#include "loop_closing/loop_closer.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
 #include "map_update.h"
@@ -60,6 +61,8 @@ class Engine {
   void Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
   SlamMap* map() { return atlas_.active(); }
   const SlamMap* map() const { return atlas_.active(); }
+  void MergeLoops(TrackingResult* result);
+  void LookForLoops(const Frame& frame, TrackingResult* result);
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
@@ -75,6 +78,7 @@ class Engine {
   ObjectStates object_states_;
   Atlas atlas_;
   PlaceIndex places_;  // of the keyframes of all maps
+  LoopCloser loop_closer_;
 
   struct BegunFrame {
     int64_t timestamp_ns;

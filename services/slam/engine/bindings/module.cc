@@ -96,6 +96,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("local_bundle_keyframes", &EngineOptions::local_bundle_keyframes)
       .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
       .def_readwrite("threads", &EngineOptions::threads)
+      .def_readwrite("loop_closing", &EngineOptions::loop_closing)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("vocabulary_path", &EngineOptions::vocabulary_path)
@@ -117,6 +118,8 @@ void BindResult(py::module_& module) {
       .def_readonly("keyframe_inserted", &TrackingResult::keyframe_inserted)
       .def_readonly("moving_unplaced", &TrackingResult::moving_unplaced)
       .def_readonly("metric_scale", &TrackingResult::metric_scale)
+      .def_readonly("loop_closed", &TrackingResult::loop_closed)
+      .def_readonly("maps_merged", &TrackingResult::maps_merged)
       .def_property_readonly("stage_ms", [](const TrackingResult& result) {
         const StageTimes& times = result.stage_ms;
         py::dict stages;
@@ -125,6 +128,8 @@ void BindResult(py::module_& module) {
         stages["match"] = times.match_ms;
         stages["local_map"] = times.local_map_ms;
         stages["mapping"] = times.mapping_ms;
+        stages["loop"] = times.loop_ms;
+        stages["background"] = times.background_ms;
         return stages;
       });
 }

@@ -30,7 +30,8 @@ bool KeyframeCuller::IsRedundant(const SlamMap& map, KeyframeId keyframe_id) con
 int KeyframeCuller::Cull(SlamMap* map, KeyframeId keyframe_id) const {
   int culled = 0;
   for (const KeyframeId neighbor : map->covisibility().Neighbors(keyframe_id, kMostNeighbors)) {
-    if (neighbor == map->first_keyframe_id() || !IsRedundant(*map, neighbor)) continue;
+    if (neighbor == map->first_keyframe_id() || !map->keyframe(neighbor).loop_edges.empty()) continue;
+    if (!IsRedundant(*map, neighbor)) continue;
     map->CullKeyframe(neighbor);
     ++culled;
   }

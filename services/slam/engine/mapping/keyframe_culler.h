@@ -9,7 +9,8 @@ namespace kinemap {
 /// Montiel and Tardos 2015, section VI-E).
 class KeyframeCuller {
  public:
-  /// Looks at the neighbours of `keyframe_id`; never at the first keyframe, which holds the map in place. Returns how
+  /// Looks at the neighbours of `keyframe_id`; never at the first keyframe, which holds the map in place, nor at those
+  /// that a recognised place ties. Returns how
   /// many were culled.
   int Cull(SlamMap* map, KeyframeId keyframe_id) const;
 

@@ -31,6 +31,10 @@ void LocalMapper::MergeIfDue(SlamMap* map, int64_t frame_index) {
   if (slot_.IsDue(frame_index)) Merge(map);
 }
 
+void LocalMapper::Settle(SlamMap* map) {
+  if (!slot_.IsFree()) Merge(map);
+}
+
 void LocalMapper::Merge(SlamMap* map) {
   WriteBackBundle(slot_.Take(), map);
   map->UpdateCovisibility(newest_);

@@ -37,6 +37,9 @@ class LocalMapper {
   /// Merges the background's solution when its frame has come, and culls redundant keyframes.
   void MergeIfDue(SlamMap* map, int64_t frame_index);
 
+  /// Merges what is pending, whatever frame it is due: nothing else may move many keyframes before.
+  void Settle(SlamMap* map);
+
   /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more,
   /// together with the radial distortion that the calibration left.
   void Finish(SlamMap* map);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optimization/bundle_adjustment.h"
 
+#include <ceres/iteration_callback.h>
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -16,9 +17,25 @@ namespace {
 
 constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
 
+// A dense reduced system grows with the cube of the cameras; that of a whole map is mostly empty.
+constexpr int kMostDenseCameras = 60;
+
 using PoseBlock = std::array<double, kPoseSize>;
 
-void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool robust, BundleProblem* bundle) {
+class StopWhenCancelled : public ceres::IterationCallback {
+ public:
+  explicit StopWhenCancelled(const std::atomic<bool>* cancelled) : cancelled_(cancelled) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return *cancelled_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::atomic<bool>* cancelled_;
+};
+
+void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool robust,
+           const std::atomic<bool>* cancelled, BundleProblem* bundle) {
   std::vector<PoseBlock> poses(bundle->cameras.size());
   for (size_t i = 0; i < poses.size(); ++i) WritePose(bundle->cameras[i].camera_from_map, poses[i].data());
 
@@ -31,7 +48,7 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
   ceres::Problem problem(problem_options);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   std::vector<bool> camera_used(poses.size(), false), point_used(bundle->points.size(), false);
-  bool has_free_camera = false;
+  int free_cameras = 0;
   for (const BundleObservation& observation : bundle->observations) {
     if (observation.outlier) continue;
     double* pose = poses[observation.camera].data();
@@ -51,7 +68,7 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
       if (bundle->cameras[observation.camera].fixed) {
         problem.SetParameterBlockConstant(pose);
       } else {
-        has_free_camera = true;
+        ++free_cameras;
       }
     }
     if (!point_used[observation.point]) {
@@ -59,18 +76,20 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
       ordering->AddElementToGroup(point, 0);
     }
   }
-  if (!has_free_camera) return;
+  if (free_cameras == 0) return;
   if (bundle_options.radial_sigma > 0) {
     problem.AddResidualBlock(new RadialPriorCost(bundle_options.radial_sigma), nullptr, &bundle->radial);
     ordering->AddElementToGroup(&bundle->radial, 1);
   }
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_type = free_cameras > kMostDenseCameras ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
   options.linear_solver_ordering = ordering;
   options.max_num_iterations = robust ? bundle_options.robust_iterations : bundle_options.final_iterations;
   options.num_threads = 1;
   options.function_tolerance = bundle_options.tolerance;
   options.logging_type = ceres::SILENT;
+  StopWhenCancelled stop(cancelled);
+  if (cancelled != nullptr) options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -90,11 +109,12 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
 
 }  // namespace
 
-void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem) {
-  Solve(camera, options, true, problem);
+void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                 const std::atomic<bool>* cancelled) {
+  Solve(camera, options, true, cancelled, problem);
   MarkOutliers(camera, problem);
   if (options.final_iterations == 0) return;
-  Solve(camera, options, false, problem);
+  Solve(camera, options, false, cancelled, problem);
   MarkOutliers(camera, problem);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <vector>
 
 #include "geometry/camera_model.h"
@@ -49,7 +50,9 @@ struct BundleOptions {
 /// outliers. With `radial_sigma` it also finds the radial distortion that calibration left: a hundredth of it is enough
 /// to change a monocular map's scale by a tenth in one turn (for KITTI see Cvisic, Markovic and Petrovic,
 /// "Recalibrating the KITTI dataset camera setup for improved odometry accuracy", ECMR 2021). Bounded by iterations,
-/// never by time, on one thread: the same problem gives the same bytes.
-void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem);
+/// never by time, on one thread: the same problem gives the same bytes. Once `cancelled` is true it ends early with a
+/// problem that is good for nothing.
+void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                 const std::atomic<bool>* cancelled = nullptr);
 
 }  // namespace kinemap

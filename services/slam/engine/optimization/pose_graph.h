@@ -27,7 +27,7 @@ struct PoseGraph {
 };
 
 struct PoseGraphOptions {
-  int iterations = 20;
+  int iterations = 100;
   double tolerance = 1e-6;        ///< ends when an iteration lowers the cost by less than this part of it
   double rotation_rad = 0.002;    ///< standard deviation of an edge's turn
   double relative_length = 0.01;  ///< of its translation, as part of its length

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kOutlierBound = 9.210;  // 99 % of chi-squared, two degrees of freedom
 constexpr double kBehindCamera = 1e4;    // cost of a point that a step puts behind a camera
+// Standard deviation of a triangulated depth's logarithm, and where Huber's loss turns linear.
+constexpr double kDepthSigma = 0.1, kDepthHuber = 2;
 constexpr int kRobustIterations = 10, kFinalIterations = 10;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
@@ -58,6 +60,22 @@ struct Sim3Optimizer::NormalEquations {
     hessian.noalias() += weight * jacobian.transpose() * jacobian;
     gradient.noalias() += weight * jacobian.transpose() * error;
   }
+
+  /// Compares the logarithms of two depths of a point.
+  void AddDepth(const Eigen::Vector3d& point, const PointJacobian& point_by_step, double depth) {
+    if (point.z() <= 0 || depth <= 0) return;
+    const double error = std::log(point.z() / depth) / kDepthSigma;
+    double weight = 1;
+    if (std::abs(error) > kDepthHuber) {
+      cost += 2 * kDepthHuber * std::abs(error) - kDepthHuber * kDepthHuber;
+      weight = kDepthHuber / std::abs(error);
+    } else {
+      cost += error * error;
+    }
+    const Eigen::Matrix<double, 1, 7> jacobian = point_by_step.row(2) / (point.z() * kDepthSigma);
+    hessian.noalias() += weight * jacobian.transpose() * jacobian;
+    gradient.noalias() += weight * error * jacobian.transpose();
+  }
 };
 
 Sim3Optimizer::NormalEquations Sim3Optimizer::Linearize(const SimilarityTransform& first_from_second,
@@ -74,6 +92,7 @@ Sim3Optimizer::NormalEquations Sim3Optimizer::Linearize(const SimilarityTransfor
     // The inverse of a moved similarity first takes the step back from the point.
     equations.Add(camera_, second_from_first * pair.in_first, -turn_back * ByStep(pair.in_first), pair.second_px,
                   pair.second_inverse_variance, robust);
+    equations.AddDepth(in_first, ByStep(in_first), pair.in_first.z());
   }
   if (fixed_scale_) {
     equations.hessian.row(6).setZero();

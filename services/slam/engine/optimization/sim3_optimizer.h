@@ -10,7 +10,8 @@ namespace kinemap {
 
 /// Similarity between two cameras that see the same points: Levenberg-Marquardt on the reprojection error in both
 /// images with Huber's loss, over the seven numbers of the similarity alone; pairs beyond the bound are left out before
-/// a second, quadratic round (Mur-Artal, Montiel and Tardos 2015, section VII-B).
+/// a second, quadratic round (Mur-Artal, Montiel and Tardos 2015, section VII-B). Two cameras in one place see the same
+/// at any scale, so that the points' depths are compared too.
 class Sim3Optimizer {
  public:
   /// With `fixed_scale` the scale stays that of the first guess.

@@ -37,11 +37,13 @@ void CameraTracker::FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id) {
   // With the keyframe come the landmarks it was the first to see.
   last_.landmark_ids = map.keyframe(keyframe_id).landmark_ids;
   last_from_reference_ = map.CameraFromReference(last_.camera_from_map, keyframe_id);
+  last_scale_ = map.MapFromAnchor(keyframe_id).scale;
 }
 
 void CameraTracker::Remember(const SlamMap& map, const Frame& frame) {
   last_ = frame;
   last_from_reference_ = map.CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id);
+  last_scale_ = map.MapFromAnchor(frame.reference_keyframe_id).scale;
 }
 
 bool CameraTracker::TrackLastFrame(const SlamMap& map, Frame* frame) const {
@@ -67,7 +69,8 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   TrackedPose result;
   const auto start = std::chrono::steady_clock::now();
   ++frames_since_relocalization_;
-  // The mapper may have moved the keyframes since: the last frame moves with its reference.
+  // The mapper may have moved the keyframes since, a closed loop changed their scale: the last frame goes along.
+  motion_model_.Rescale(map->MapFromAnchor(last_.reference_keyframe_id).scale / last_scale_);
   last_.camera_from_map = map->CameraFromMap(last_from_reference_, last_.reference_keyframe_id);
   frame->reference_keyframe_id = map->LiveKeyframe(last_.reference_keyframe_id);
 

@@ -62,6 +62,7 @@ class CameraTracker {
   MotionModel motion_model_;
   Frame last_;
   RigidTransform last_from_reference_;
+  double last_scale_ = 1;  // map units in one unit of the reference keyframe's
   int lost_frames_ = 0;
   int frames_since_relocalization_ = 1 << 20;
 };

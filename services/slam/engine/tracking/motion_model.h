@@ -12,6 +12,10 @@ class MotionModel {
  public:
   /// Both poses are camera_from_map of consecutive frames.
   void Update(const RigidTransform& last, const RigidTransform& current) { velocity_ = current * last.Inverse(); }
+  /// Lengths count `factor` times what they did.
+  void Rescale(double factor) {
+    if (velocity_) velocity_->translation *= factor;
+  }
   void Reset() { velocity_.reset(); }
   bool IsKnown() const { return velocity_.has_value(); }
   RigidTransform Predict(const RigidTransform& last) const { return *velocity_ * last; }

@@ -126,5 +126,19 @@ TEST(Sim3Optimizer, RefinesAndLeavesOutWhatDoesNotFit) {
   EXPECT_EQ(Sim3Optimizer(camera, true).Optimize(guess, pairs).first_from_second.scale, 1.1);
 }
 
+TEST(Sim3Optimizer, FindsTheScaleOfTwoCamerasInOnePlace) {
+  const SimilarityTransform truth(RotationFromVector({0.02, -0.1, 0.03}), {0, 0, 0}, 0.7);
+  const CameraModel camera = synthetic::TestCamera();
+  const synthetic::Scene scene(60, 2, 6, 12);
+  std::vector<PointPair> pairs;
+  for (const Eigen::Vector3d& point : scene.points()) {
+    PointPair pair{point, truth.Inverse() * point, camera.Project(point), {}, 1, 1};
+    pair.second_px = camera.Project(pair.in_second);
+    pairs.push_back(pair);
+  }
+  const SimilarityTransform guess(truth.rotation, {0.1, 0, 0.1}, 1.1);
+  EXPECT_NEAR(Sim3Optimizer(camera, false).Optimize(guess, pairs).first_from_second.scale, 0.7, 1e-3);
+}
+
 }  // namespace
 }  // namespace kinemap

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "loop_closing/place_matcher.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "features/rotation_consistency.h"
+
+namespace kinemap {
+namespace {
+
+constexpr double kWordRatio = 0.8;
+
+/// Keypoints that observe lasting landmarks, by their vocabulary node.
+std::map<uint32_t, std::vector<int>> ByNode(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag) {
+  std::map<uint32_t, std::vector<int>> keypoints;
+  for (size_t i = 0; i < keyframe.landmark_ids.size(); ++i) {
+    const Landmark* landmark = map.FindLandmark(keyframe.landmark_ids[i]);
+    const uint32_t node = bag.node_of_keypoint[i];
+    if (landmark == nullptr || !IsLasting(*landmark) || node == BagOfWords::kNoNode) continue;
+    keypoints[node].push_back(static_cast<int>(i));
+  }
+  return keypoints;
+}
+
+/// Of matches that meet in one train keypoint the nearest stays.
+template <typename Key>
+std::vector<LandmarkMatch> NearestOfEach(const std::vector<LandmarkMatch>& matches, Key key) {
+  std::map<int64_t, LandmarkMatch> nearest;
+  for (const LandmarkMatch& match : matches) {
+    const auto [entry, is_new] = nearest.try_emplace(key(match), match);
+    if (!is_new && match.distance < entry->second.distance) entry->second = match;
+  }
+  std::vector<LandmarkMatch> kept;
+  for (const auto& [number, match] : nearest) kept.push_back(match);
+  return kept;
+}
+
+}  // namespace
+
+std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
+  std::set<LandmarkId> landmarks;
+  for (const KeyframeId keyframe_id : keyframes) {
+    for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
+      const Landmark* landmark = map.FindLandmark(id);
+      if (landmark != nullptr && IsLasting(*landmark)) landmarks.insert(landmark->id);
+    }
+  }
+  return {landmarks.begin(), landmarks.end()};
+}
+
+std::vector<LandmarkMatch> MatchByWords(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag,
+                                        const SlamMap& other_map, const Keyframe& other, const BagOfWords& other_bag) {
+  const std::map<uint32_t, std::vector<int>> others = ByNode(other_map, other, other_bag);
+  std::vector<LandmarkMatch> matches;
+  std::map<LandmarkId, int> keypoint_of_landmark;
+  for (const auto& [node, keypoints] : ByNode(map, keyframe, bag)) {
+    const auto candidates = others.find(node);
+    if (candidates == others.end()) continue;
+    for (const int keypoint : keypoints) {
+      int best = -1, best_distance = 257, second_distance = 257;
+      for (const int candidate : candidates->second) {
+        const int distance =
+            HammingDistance(keyframe.features->descriptors[keypoint], other.features->descriptors[candidate]);
+        if (distance < best_distance) {
+          second_distance = best_distance, best_distance = distance, best = candidate;
+        } else if (distance < second_distance) {
+          second_distance = distance;
+        }
+      }
+      if (best_distance > kStrictHammingDistance || best_distance >= kWordRatio * second_distance) continue;
+      const LandmarkId id = other_map.FindLandmark(other.landmark_ids[best])->id;
+      matches.push_back({keypoint, id, best_distance});
+      keypoint_of_landmark.try_emplace(id, best);
+    }
+  }
+  matches = NearestOfEach(matches, [](const LandmarkMatch& match) { return match.landmark_id; });
+  RotationConsistency rotation;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    rotation.Add(static_cast<int>(i), keyframe.features->keypoints[matches[i].keypoint].angle_deg,
+                 other.features->keypoints[keypoint_of_landmark[matches[i].landmark_id]].angle_deg);
+  }
+  std::set<int> inconsistent;
+  for (const int match : rotation.Inconsistent()) inconsistent.insert(match);
+  std::vector<LandmarkMatch> consistent;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (inconsistent.count(static_cast<int>(i)) == 0) consistent.push_back(matches[i]);
+  }
+  return consistent;
+}
+
+std::vector<LandmarkMatch> MatchByProjection(const SlamMap& map, const std::vector<LandmarkId>& landmarks,
+                                             const CameraModel& camera, const RigidTransform& camera_from_map,
+                                             const Keyframe& keyframe, double radius_px, int max_distance) {
+  const Eigen::Vector3d center = camera_from_map.Inverse().translation;
+  KeypointSearch search;
+  std::vector<LandmarkMatch> matches;
+  for (const LandmarkId id : landmarks) {
+    const Landmark* landmark = map.FindLandmark(id);
+    if (landmark == nullptr || landmark->observations.count(keyframe.id) > 0) continue;
+    const auto view =
+        PredictView(*landmark, map.PositionInMap(*landmark), camera_from_map, center, camera, map.scales());
+    if (!view) continue;
+    const SearchWindow window{view->pixel_px, radius_px * map.scales().scale(view->octave), view->octave - 1,
+                              view->octave + 1};
+    const int best = search.FindBest(*keyframe.features, landmark->descriptor, window, max_distance, 1.0,
+                                     [&](int keypoint) { return IsLasting(keyframe.labels[keypoint]); });
+    if (best >= 0) matches.push_back({best, landmark->id, search.distance()});
+  }
+  return NearestOfEach(matches, [](const LandmarkMatch& match) { return match.keypoint; });
+}
+
+}  // namespace kinemap
