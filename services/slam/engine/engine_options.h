@@ -22,6 +22,7 @@ struct EngineOptions {
   int local_bundle_keyframes = 15;  ///< keyframes that move in a local bundle adjustment
   double radial_sigma = 0.01;       ///< distortion calibration may have left, found at the end; 0: calibration is exact
   int threads = 2;                  ///< of feature extraction; results are the same with any number
+  double depth_baseline_m = 0.5;    ///< of the pair (1 px) that a depth camera without a right image is as good as
   int opencv_threads = 1;           ///< for the whole process; 0 leaves OpenCV as it is
   int64_t map_id = 0;               ///< ids start at map_id << 32; 0 <= map_id < 2^31
   Eigen::Matrix4d map_from_first_camera = Eigen::Matrix4d::Identity();  ///< pose of the first keyframe

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from services.evaluation.trajectory.alignment import Alignment
 from services.slam import _engine
 from tests.benchmark.slam.engine_run import TRACKING, EngineRun, run_kitti, true_centers_m
 
@@ -32,7 +33,10 @@ def report(run: EngineRun, poses: Path | None) -> dict[str, object]:
         "digest": run.digest.hexdigest()[:16],
     }
     if poses is not None:
-        figures["ate_m"] = round(run.ate_m(true_centers_m(poses)), 3)
+        truth = true_centers_m(poses)
+        figures["ate_m"] = round(run.ate_m(truth), 3)
+        figures["ate_se3_m"] = round(run.ate_m(truth, Alignment.SE3), 4)
+        figures["scale_error"] = round(run.scale_error(truth), 5)
     return figures
 
 
@@ -42,6 +46,7 @@ def main() -> None:
     parser.add_argument("--poses", type=Path)
     parser.add_argument("--stage", choices=["base", "dynamic", "moving"], default="moving")
     parser.add_argument("--images", default="image_0")
+    parser.add_argument("--stereo", action="store_true", help="use image_1 too")
     parser.add_argument("--frames", type=int)
     parser.add_argument("--option", action="append", default=[], metavar="NAME=NUMBER", help="of EngineOptions")
     arguments = parser.parse_args()
@@ -50,7 +55,9 @@ def main() -> None:
     for assignment in arguments.option:
         name, value = assignment.split("=")
         setattr(options, name, type(getattr(options, name))(float(value)))
-    run = run_kitti(arguments.sequence, options, images=arguments.images, frames=arguments.frames)
+    run = run_kitti(
+        arguments.sequence, options, images=arguments.images, frames=arguments.frames, stereo=arguments.stereo
+    )
     print(json.dumps(report(run, arguments.poses), indent=1))
     for index, result in enumerate(run.results):
         if result.state != TRACKING:

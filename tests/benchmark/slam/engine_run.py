@@ -37,14 +37,16 @@ class EngineRun:
     wall_ms: list[float] = field(default_factory=list)
     digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
 
-    def step(self, image: npt.NDArray[np.uint8], objects: MaskObjects) -> None:
+    def step(
+        self, image: npt.NDArray[np.uint8], objects: MaskObjects, right: npt.NDArray[np.uint8] | None = None
+    ) -> None:
         """Track the next frame; every object counts as standing."""
         index = len(self.results)
         track_image, ids, categories = objects.next_frame(index)
         states = np.full(len(ids), NON_MOVING, np.uint8)
         start = time.perf_counter()
-        self.engine.begin_frame((index + 1) * FRAME_NS, image)
-        result = self.engine.finish_frame(track_image, ids, categories, states, True, None)
+        self.engine.begin_frame((index + 1) * FRAME_NS, image, right)
+        result = self.engine.finish_frame(track_image, ids, categories, states, True)
         self.wall_ms.append((time.perf_counter() - start) * 1e3)
         self.results.append(result)
         if result.state == TRACKING:
@@ -64,12 +66,17 @@ class EngineRun:
         centers = [(self.keyframes[reference] @ np.linalg.inv(pose))[:3, 3] for reference, pose in poses]
         return indices, np.array(centers).reshape(-1, 3)
 
-    def ate_m(self, true_centers_m: Array) -> float:
+    def ate_m(self, true_centers_m: Array, alignment: Alignment = Alignment.SIM3) -> float:
         """Root mean square error of all frames with a pose after the best similarity (Umeyama 1991)."""
         indices, centers = self.centers()
         truth = true_centers_m[indices]
-        aligned = align(centers, truth, Alignment.SIM3).points(centers)
+        aligned = align(centers, truth, alignment).points(centers)
         return float(np.sqrt(((aligned - truth) ** 2).sum(axis=1).mean()))
+
+    def scale_error(self, true_centers_m: Array) -> float:
+        """By how much the truth is longer than the map, as a share of it, in the best similarity."""
+        indices, centers = self.centers()
+        return float(align(centers, true_centers_m[indices], Alignment.SIM3).scale) - 1.0
 
     def initialized_at(self) -> int:
         """Index of the first frame with a pose of its own; -1 when there is none."""
@@ -98,25 +105,36 @@ class EngineRun:
 
 
 def run_kitti(
-    sequence: Path, options: _engine.EngineOptions, *, images: str = "image_0", frames: int | None = None
+    sequence: Path,
+    options: _engine.EngineOptions,
+    *,
+    images: str = "image_0",
+    frames: int | None = None,
+    stereo: bool = False,
 ) -> EngineRun:
-    """Run a folder in KITTI's layout with `instances/` beside the images."""
-    line = next(line for line in (sequence / "calib.txt").read_text().splitlines() if line.startswith("P0"))
-    p = np.array(line.split()[1:], float).reshape(3, 4)
+    """Run a folder in KITTI's layout with `instances/` beside the images; `stereo`: `image_1` too."""
+    lines = [line.split() for line in (sequence / "calib.txt").read_text().splitlines()]
+    projections = {words[0].rstrip(":"): np.array(words[1:], float).reshape(3, 4) for words in lines}
+    p = projections["P0"]
+    baseline_m = float(-projections["P1"][0, 3] / p[0, 0]) if stereo else 0.0
     paths = sorted((sequence / images).iterdir())[:frames]
     objects = MaskObjects(sequence / "instances", [path.stem for path in paths])
     run: EngineRun | None = None
     for path in paths:
-        image = np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
+        image = _grey(path)
         if run is None:
             height, width = image.shape
-            camera = _engine.CameraModel(width, height, p[0, 0], p[1, 1], p[0, 2], p[1, 2])
+            camera = _engine.CameraModel(width, height, p[0, 0], p[1, 1], p[0, 2], p[1, 2], [], baseline_m)
             run = EngineRun(_engine.Engine(camera, options))
-        run.step(image, objects)
+        run.step(image, objects, _grey(sequence / "image_1" / path.name) if stereo else None)
     if run is None:
         raise FileNotFoundError(f"{sequence / images}: no images")
     run.finish()
     return run
+
+
+def _grey(path: Path) -> npt.NDArray[np.uint8]:
+    return np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
 
 
 def true_centers_m(poses: Path) -> Array:
