@@ -60,9 +60,9 @@ MANIFEST = _frame_topic(
     "camera/manifest", camera_pb2.FrameManifest, "camera", "segmenter", "motion", "tracker", "slam", "mapstore"
 )
 CALIBRATION = _frame_topic("camera/calibration", CameraCalibration, "camera", "motion", "slam")
-CALIBRATION_RIGHT = _frame_topic("camera/calibration_right", CameraCalibration, "camera")
+CALIBRATION_RIGHT = _frame_topic("camera/calibration_right", CameraCalibration, "camera", "slam")
 IMAGE = _frame_topic("camera/image", RawImage, "camera", "segmenter", "motion", "slam")
-IMAGE_RIGHT = _frame_topic("camera/image_right", RawImage, "camera")
+IMAGE_RIGHT = _frame_topic("camera/image_right", RawImage, "camera", "slam")
 DEPTH = _frame_topic("camera/depth", RawImage, "camera", "slam")
 TRUE_POSE = _frame_topic("truth/pose", PoseInFrame, "camera")
 TRUE_INSTANCES = _frame_topic("truth/instances", camera_pb2.TrueInstances, "camera", "segmenter")

@@ -19,7 +19,10 @@ class Stage:
     def value(self) -> int: ...
 
 class CameraModel:
-    """A pinhole camera; pixels; `distortion` holds 0, 4 or 5 of k1, k2, p1, p2, k3. ValueError for what is none."""
+    """A pinhole camera; pixels; `distortion` holds 0, 4 or 5 of k1, k2, p1, p2, k3. ValueError for what is none.
+
+    With a baseline it is the left one of a rectified pair whose right camera stands `baseline_m` along its x axis.
+    """
 
     def __init__(
         self,
@@ -30,6 +33,7 @@ class CameraModel:
         cx: float,
         cy: float,
         distortion: Sequence[float] = ...,
+        baseline_m: float = ...,
     ) -> None: ...
     @property
     def width(self) -> int: ...
@@ -52,6 +56,7 @@ class EngineOptions:
     radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
     threads: int  # 2, of feature extraction; results are the same with any number
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
+    depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
@@ -144,12 +149,21 @@ def descriptors_of(
     """The engine's features of a grey image: descriptors (n, 32) and raw pixels (n, 2)."""
 
 class Engine:
-    """Monocular SLAM frame by frame. The GIL is released while it works; calls from several threads take turns."""
+    """SLAM frame by frame. The GIL is released while it works; calls from several threads take turns."""
 
     def __init__(self, camera: CameraModel, options: EngineOptions) -> None:
         """ValueError names an option outside its range."""
-    def begin_frame(self, timestamp_ns: int, image: npt.NDArray[np.uint8]) -> None:
-        """Extract features of a C-contiguous (height, width) image. ValueError for another one or an earlier time."""
+    def begin_frame(
+        self,
+        timestamp_ns: int,
+        image: npt.NDArray[np.uint8],
+        right: npt.NDArray[np.uint8] | None = ...,
+        depth_m: npt.NDArray[np.float32] | None = ...,
+    ) -> None:
+        """Extract features of a C-contiguous (height, width) image, with depths from the right one or the depth image.
+
+        ValueError for arrays that do not fit, a right image to a camera without baseline, or an earlier time.
+        """
     def finish_frame(
         self,
         track_image: npt.NDArray[np.uint32] | None,
@@ -157,7 +171,6 @@ class Engine:
         categories: npt.NDArray[np.int32],
         motion_states: npt.NDArray[np.uint8],
         masks_fresh: bool,
-        depth_m: npt.NDArray[np.float32] | None,
     ) -> TrackingResult:
         """Track and map the begun frame. RuntimeError when none was begun, ValueError for arrays that do not fit."""
     def flush(self) -> None:

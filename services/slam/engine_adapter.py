@@ -47,27 +47,45 @@ class EngineSettings:
 
 
 class SlamEngine:
-    """One camera's monocular SLAM. Not for two threads at once."""
+    """SLAM of one camera, a rectified pair or a depth camera. Not for two threads at once."""
 
-    def __init__(self, calibration: CameraCalibration, settings: EngineSettings | None = None) -> None:
-        """InputError names the number of the calibration or the setting that cannot be used."""
+    def __init__(
+        self,
+        calibration: CameraCalibration,
+        settings: EngineSettings | None = None,
+        right: CameraCalibration | None = None,
+    ) -> None:
+        """InputError names the number of the calibration or the setting that cannot be used.
+
+        Args:
+            calibration: of the camera, the left one of a pair.
+            settings: None: the defaults.
+            right: of the other camera of a rectified pair; its projection says the baseline.
+        """
         self._settings = settings or EngineSettings()
         self._metric_scale = False
         self._depth_scale = DepthScale(calibration, self._settings.map_from_first_camera[:3])
+        self._depth: DepthImage | None = None
         self._measured: tuple[npt.NDArray[np.float64], DepthImage] | None = None
         with _input_errors():
-            self._engine = _engine.Engine(_camera_model(calibration), _engine_options(self._settings))
+            self._engine = _engine.Engine(_camera_model(calibration, right), _engine_options(self._settings))
 
-    def begin_frame(self, image: Image) -> None:
-        """Extract the features of an image; it needs no objects yet.
+    def begin_frame(self, image: Image, right: Image | None = None, depth: DepthImage | None = None) -> None:
+        """Extract the features of an image, with depths where a right or a depth image comes; it needs no objects yet.
 
-        A frame begun but not finished is replaced. InputError when the size is not the calibration's or the time is not
-        after the last frame's.
+        A frame begun but not finished is replaced. InputError when a size is not the calibration's, a right image comes
+        to an engine that does not know the right camera, or the time is not after the last frame's.
         """
+        self._depth = depth
         with _input_errors():
-            self._engine.begin_frame(image.timestamp_ns, _grey(image.pixels))
+            self._engine.begin_frame(
+                image.timestamp_ns,
+                _grey(image.pixels),
+                None if right is None else _grey(right.pixels),
+                None if depth is None else np.ascontiguousarray(depth.depth_m, np.float32),
+            )
 
-    def finish_frame(self, objects: Objects | None, masks: MaskSource, depth: DepthImage | None = None) -> TrackedFrame:
+    def finish_frame(self, objects: Objects | None, masks: MaskSource) -> TrackedFrame:
         """Track and map the frame begun last.
 
         Masks that are not fresh keep every object out of tracking, whatever its state (in the stages that know
@@ -82,10 +100,9 @@ class SlamEngine:
                 np.array([category_id(row.category) for row in rows], np.int32),
                 np.array([row.motion_state for row in rows], np.uint8),
                 masks is MaskSource.FRESH,
-                None if depth is None else np.ascontiguousarray(depth.depth_m, np.float32),
             )
         in_units = self._tracked_frame(result, masks)
-        self._measured = None
+        self._measured, depth = None, self._depth
         if depth is not None and in_units.keyframe_inserted and in_units.map_from_camera is not None:
             self._measured = (in_units.map_from_camera, depth)
         self._metric_scale = result.metric_scale
@@ -149,7 +166,7 @@ def _input_errors() -> Iterator[None]:
         raise InputError(str(error)) from error
 
 
-def _camera_model(calibration: CameraCalibration) -> _engine.CameraModel:
+def _camera_model(calibration: CameraCalibration, right: CameraCalibration | None) -> _engine.CameraModel:
     if calibration.distortion and calibration.distortion_model != "plumb_bob":
         raise InputError(f"lens {calibration.distortion_model}: expected plumb_bob, or images without distortion")
     k = calibration.intrinsics
@@ -161,7 +178,19 @@ def _camera_model(calibration: CameraCalibration) -> _engine.CameraModel:
         float(k[0, 2]),
         float(k[1, 2]),
         list(calibration.distortion),
+        0.0 if right is None else _baseline_m(calibration, right),
     )
+
+
+def _baseline_m(left: CameraCalibration, right: CameraCalibration) -> float:
+    """InputError for cameras that are no rectified pair."""
+    names = ("width", "height", "distortion", "distortion_model")
+    same = all(getattr(left, name) == getattr(right, name) for name in names)
+    if not same or not np.allclose(left.intrinsics, right.intrinsics):
+        raise InputError("right camera: expected the lens and the size of the left one (a rectified pair), got others")
+    if right.projection is None or not right.projection[0, 3] < 0:
+        raise InputError("right camera: expected a projection with -fx * baseline in its first row, got none")
+    return float(-right.projection[0, 3] / right.projection[0, 0])
 
 
 def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:

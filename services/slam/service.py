@@ -29,7 +29,14 @@ class SlamService(FrameService):
     """
 
     name: ClassVar[str] = NAME
-    awaits: ClassVar[tuple[Topic, ...]] = (topics.IMAGE, topics.CALIBRATION, topics.DEPTH, topics.OBJECTS)
+    awaits: ClassVar[tuple[Topic, ...]] = (
+        topics.IMAGE,
+        topics.IMAGE_RIGHT,
+        topics.CALIBRATION,
+        topics.CALIBRATION_RIGHT,
+        topics.DEPTH,
+        topics.OBJECTS,
+    )
     deferrable: ClassVar[tuple[Topic, ...]] = (topics.OBJECTS,)
     answers: ClassVar[bool] = True
 
@@ -40,6 +47,7 @@ class SlamService(FrameService):
         self._engine: SlamEngine | None = None
         self._lost_policy = LostPolicy(config.slam.new_map_after_lost)
         self._calibration: CameraCalibration | None = None
+        self._right_calibration: CameraCalibration | None = None
         self._map_id = 0
         self._objects: Objects | None = None
         self._state = TrackingState.INITIALIZING
@@ -47,11 +55,13 @@ class SlamService(FrameService):
 
     def process(self, bundle: Bundle) -> list[Outgoing]:
         """Track one frame."""
-        engine = self._engine_for(bundle[topics.CALIBRATION])
-        engine.begin_frame(bundle[topics.IMAGE])
-        objects, masks = self._masks(bundle.get(topics.OBJECTS))
+        right_calibration = bundle.get(topics.CALIBRATION_RIGHT) if self._options.use_stereo else None
+        engine = self._engine_for(bundle[topics.CALIBRATION], right_calibration)
+        right = bundle.get(topics.IMAGE_RIGHT) if self._right_calibration is not None else None
         depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
-        frame = engine.finish_frame(objects, masks, depth)
+        engine.begin_frame(bundle[topics.IMAGE], right, depth)
+        objects, masks = self._masks(bundle.get(topics.OBJECTS))
+        frame = engine.finish_frame(objects, masks)
         self._note(frame)
         if self._lost_policy.gives_up(frame):
             self._begin_new_map(engine)
@@ -82,10 +92,10 @@ class SlamService(FrameService):
         """What happened so far."""
         return dict(self._counts)
 
-    def _engine_for(self, calibration: CameraCalibration) -> SlamEngine:
+    def _engine_for(self, calibration: CameraCalibration, right: CameraCalibration | None) -> SlamEngine:
         known = self._calibration
         if self._engine is not None and known is not None:
-            if not _same_camera(known, calibration):
+            if not _same_camera(known, calibration) or not _same_pair(self._right_calibration, right):
                 raise InputError("the camera's calibration changed within a session, expected one camera a session")
             return self._engine
         options = self._options
@@ -100,8 +110,8 @@ class SlamService(FrameService):
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )
-        self._engine = SlamEngine(calibration, settings)
-        self._calibration = calibration
+        self._engine = SlamEngine(calibration, settings, right)
+        self._calibration, self._right_calibration = calibration, right
         return self._engine
 
     def _begin_new_map(self, engine: SlamEngine) -> None:
@@ -140,6 +150,11 @@ def _same_camera(one: CameraCalibration, other: CameraCalibration) -> bool:
     names = ("width", "height", "distortion", "distortion_model")
     same = all(getattr(one, name) == getattr(other, name) for name in names)
     return same and np.array_equal(one.intrinsics, other.intrinsics)
+
+
+def _same_pair(known: CameraCalibration | None, right: CameraCalibration | None) -> bool:
+    """A right camera may stay silent; one that was not there at first must not come."""
+    return right is None or (known is not None and _same_camera(known, right))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ engine = _engine.Engine(_engine.CameraModel(160, 120, 100.0, 100.0, 80.0, 60.0),
 image = np.random.default_rng(1).integers(0, 255, (120, 160), dtype=np.uint8)
 engine.begin_frame(0, image)
 rows = [np.zeros(0, dtype) for dtype in (np.uint32, np.int32, np.uint8)]
-assert engine.finish_frame(None, *rows, False, None).features > 100
+assert engine.finish_frame(None, *rows, False).features > 100
 """,
     "cv2": """
 import cv2, numpy as np

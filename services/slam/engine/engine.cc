@@ -60,29 +60,36 @@ void CheckSize(const char* name, const cv::Mat& image, const CameraModel& camera
 }  // namespace
 
 Engine::Engine(const CameraModel& camera, const EngineOptions& options)
-    : camera_(camera),
+    : has_right_camera_(camera.baseline_m() > 0),
+      camera_(has_right_camera_ ? camera : camera.WithBaseline(Checked(options).depth_baseline_m)),
       options_(Checked(options)),
       scales_(options.pyramid_levels, options.pyramid_factor),
-      extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_),
-      initializer_({}, camera),
-      map_builder_(camera, scales_),
-      tracker_(TrackerOptions(options), camera, &places_),
+      extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_,
+                 camera_),
+      initializer_({}, camera_),
+      map_builder_(camera_, scales_),
+      tracker_(TrackerOptions(options), camera_, &places_),
       keyframe_policy_({}),
-      mapper_(MapperOptions(options), camera),
+      mapper_(MapperOptions(options), camera_),
       atlas_(options.map_id, scales_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
-      loop_closer_(ClosingOptions(options), camera) {
+      loop_closer_(ClosingOptions(options), camera_) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
-void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image) {
+void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth_m) {
   CheckSize("image", image, camera_);
+  if (!right.empty()) CheckSize("right", right, camera_);
+  if (!right.empty() && !has_right_camera_) {
+    throw std::invalid_argument("right: expected no image of a camera without a stereo baseline");
+  }
+  if (!depth_m.empty()) CheckSize("depth_m", depth_m, camera_);
   if (last_timestamp_ns_ && timestamp_ns <= *last_timestamp_ns_) {
     throw std::invalid_argument("timestamp_ns: expected one after " + std::to_string(*last_timestamp_ns_) + ", got " +
                                 std::to_string(timestamp_ns));
   }
   const Stopwatch stopwatch;
-  FrameFeaturesPtr features = extractor_.Extract(image, camera_);
+  FrameFeaturesPtr features = extractor_.Extract(image, right, depth_m);
   begun_ = BegunFrame{timestamp_ns, std::move(features), stopwatch.ElapsedMs()};
 }
 
@@ -97,11 +104,9 @@ Frame Engine::MakeFrame(const FrameObjects& objects) {
   return frame;
 }
 
-TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& depth_m) {
+TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
   if (!begun_) throw std::logic_error("finish_frame: no frame was begun");
   if (!objects.track_image.empty()) CheckSize("track_image", objects.track_image, camera_);
-  if (!depth_m.empty()) CheckSize("depth_m", depth_m, camera_);
-
   ++frame_index_;
   TrackingResult result;
   result.timestamp_ns = begun_->timestamp_ns;
@@ -112,7 +117,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
   last_timestamp_ns_ = begun_->timestamp_ns;
   begun_.reset();
   if (map() == nullptr) {
-    Initialize(&frame, depth_m, &result);
+    Initialize(&frame, &result);
   } else {
     const Stopwatch stopwatch;
     mapper_.MergeIfDue(map(), frame_index_);
@@ -121,7 +126,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
     if (options_.stage == Stage::kMoving && objects.masks_fresh) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
-    Track(&frame, depth_m, &result);
+    Track(&frame, &result);
   }
   if (map() != nullptr) places_.Follow(map());
   LookForLoops(frame, &result);
@@ -129,15 +134,15 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
   return result;
 }
 
-void Engine::Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* result) {
+void Engine::Initialize(Frame* frame, TrackingResult* result) {
   const Stopwatch stopwatch;
   result->state = TrackingState::kInitializing;
   RandomEngine random(options_.seed, frame->timestamp_ns);
   const std::optional<InitialMap> initial = initializer_.Try(*frame, random);
   result->reason = initializer_.reason();
   if (initial) {
-    BuiltMap built = map_builder_.Build(
-        atlas_.next_map_id(), RigidTransform::FromMatrix(options_.map_from_first_camera), *initial, *frame, depth_m);
+    BuiltMap built = map_builder_.Build(atlas_.next_map_id(),
+                                        RigidTransform::FromMatrix(options_.map_from_first_camera), *initial, *frame);
     result->reason = built.reason;
     if (built.map != nullptr) {
       atlas_.Add(std::move(built.map)).set_metric_scale(built.metric_scale);
@@ -188,7 +193,7 @@ void Engine::FillWaitingFrames(const Frame& first, const Frame& current) {
   }
 }
 
-void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result) {
+void Engine::Track(Frame* frame, TrackingResult* result) {
   const TrackedPose pose = tracker_.Track(map(), frame);
   result->stage_ms.match_ms = pose.match_ms;
   result->stage_ms.local_map_ms = pose.local_map_ms;
@@ -199,7 +204,7 @@ void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result)
   if (NeedsKeyframe(*frame, pose.estimate.inliers)) {
     const Stopwatch stopwatch;
     const RigidTransform camera_from_map = frame->camera_from_map;
-    frame->reference_keyframe_id = mapper_.Insert(map(), *frame, depth_m, frame_index_, &result->moving_unplaced);
+    frame->reference_keyframe_id = mapper_.Insert(map(), *frame, frame_index_, &result->moving_unplaced);
     frame->camera_from_map = camera_from_map;
     last_keyframe_index_ = frame_index_;
     tracker_.FollowKeyframe(*map(), frame->reference_keyframe_id);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine_options.h"
-#include "features/orb_extractor.h"
+#include "features/rig_extractor.h"
 #include "loop_closing/loop_closer.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
@@ -29,20 +29,22 @@ struct FrameObjects {
   bool masks_fresh = true;  ///< false: carried from an earlier frame, so nothing on an object is trusted
 };
 
-/// Monocular SLAM, frame by frame: the same images, objects and options give the same bytes, on any load. Not to be
-/// called from two threads at once.
+/// SLAM with one camera, a rectified pair or a depth camera, frame by frame: the same images, objects and options give
+/// the same bytes, on any load. Not to be called from two threads at once.
 class Engine {
  public:
   /// Throws std::invalid_argument when an option is out of its range or the vocabulary cannot be read.
   Engine(const CameraModel& camera, const EngineOptions& options);
 
-  /// Extracts the features of an 8-bit grey image of the camera's size. A frame begun but not finished is replaced.
-  /// Throws std::invalid_argument when the size is another or the timestamp does not come after the last frame's.
-  void BeginFrame(int64_t timestamp_ns, const cv::Mat& image);
+  /// Extracts the features of an 8-bit grey image of the camera's size. `right`, the other image of a rectified pair,
+  /// and `depth_m` (CV_32F, along the optical axis, 0 or not a number where unknown) are of the same size or empty.
+  /// A frame begun but not finished is replaced. Throws std::invalid_argument when a size is another, a right image
+  /// comes to a camera without a baseline or the timestamp does not come after the last frame's.
+  void BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Mat& right = {}, const cv::Mat& depth_m = {});
 
-  /// Tracks and maps the begun frame. `depth_m` is CV_32F of the camera's size or empty. Throws std::logic_error when
-  /// no frame was begun, std::invalid_argument for images of another size.
-  TrackingResult FinishFrame(const FrameObjects& objects, const cv::Mat& depth_m);
+  /// Tracks and maps the begun frame. Throws std::logic_error when no frame was begun, std::invalid_argument for a
+  /// track image of another size.
+  TrackingResult FinishFrame(const FrameObjects& objects);
 
   /// The end of the input: merges the background's work and adjusts the whole map (its newest 300 keyframes) once more,
   /// together with the radial distortion that the calibration left.
@@ -56,9 +58,9 @@ class Engine {
 
  private:
   Frame MakeFrame(const FrameObjects& objects);
-  void Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
+  void Initialize(Frame* frame, TrackingResult* result);
   void FillWaitingFrames(const Frame& first, const Frame& current);
-  void Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
+  void Track(Frame* frame, TrackingResult* result);
   SlamMap* map() { return atlas_.active(); }
   const SlamMap* map() const { return atlas_.active(); }
   void MergeLoops(TrackingResult* result);
@@ -66,10 +68,11 @@ class Engine {
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
+  bool has_right_camera_;
   CameraModel camera_;
   EngineOptions options_;
   PyramidScales scales_;
-  OrbExtractor extractor_;
+  RigExtractor extractor_;
   MapInitializer initializer_;
   InitialMapBuilder map_builder_;
   CameraTracker tracker_;

@@ -42,6 +42,7 @@ def main() -> None:
     parser.add_argument("sequences", type=Path, nargs="+")
     parser.add_argument("--stage", action="append", choices=["base", "dynamic", "moving"])
     parser.add_argument("--images", default="image_0")
+    parser.add_argument("--right", help="folder of the other images of a rectified pair, such as image_1")
     parser.add_argument("--start", type=int, default=0)
     parser.add_argument("--frames", type=int)
     parser.add_argument("--option", action="append", default=[], metavar="NAME=NUMBER", help="of EngineOptions")
@@ -52,7 +53,7 @@ def main() -> None:
     options = {name: float(value) for name, value in (assignment.split("=") for assignment in given.option)}
     passes = []
     for sequence in given.sequences:
-        part = SequencePart(sequence, given.start, given.frames, images=given.images)
+        part = SequencePart(sequence, given.start, given.frames, images=given.images, right_images=given.right)
         name = f"{sequence.resolve().parent.parent.name}/{sequence.name}"
         passes += [EnginePass((part,), stage, options, f"{name} {stage}") for stage in given.stage or ["moving"]]
     reports = run_passes(passes, given.jobs)

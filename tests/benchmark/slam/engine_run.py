@@ -40,8 +40,8 @@ class EngineRun:
         """Track the next frame."""
         index, objects = len(self.results), frame.objects
         start = time.perf_counter()
-        self.engine.begin_frame((index + 1) * FRAME_NS, frame.image)
-        result = self.engine.finish_frame(*objects, masks_fresh=True, depth_m=None)
+        self.engine.begin_frame((index + 1) * FRAME_NS, frame.image, frame.right)
+        result = self.engine.finish_frame(*objects, masks_fresh=True)
         self.wall_ms.append((time.perf_counter() - start) * 1e3)
         self.results.append(result)
         if result.state == TRACKING:
@@ -112,7 +112,8 @@ def run_parts(parts: tuple[SequencePart, ...], options: _engine.EngineOptions) -
         for frame in part.read():
             if run is None:
                 height, width = frame.image.shape
-                run = EngineRun(_engine.Engine(_engine.CameraModel(width, height, *part.intrinsics()), options))
+                camera = _engine.CameraModel(width, height, *part.intrinsics(), [], part.baseline_m())
+                run = EngineRun(_engine.Engine(camera, options))
             run.step(frame)
     if run is None:
         raise FileNotFoundError(f"{parts[0].folder}: no frame from number {parts[0].start} on")

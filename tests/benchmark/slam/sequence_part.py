@@ -23,6 +23,7 @@ class SequenceFrame(NamedTuple):
 
     image: npt.NDArray[np.uint8]
     objects: FrameObjects
+    right: npt.NDArray[np.uint8] | None = None
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,8 @@ class SequencePart:
     step: int = 1
     images: str = "image_0"
     black: bool = False
+    right_images: str | None = None
+    """the other images of a rectified pair, such as image_1; none: one camera"""
 
     def paths(self) -> list[Path]:
         """The images, in the order in which they are shown. FileNotFoundError where there are none."""
@@ -49,19 +52,25 @@ class SequencePart:
 
     def intrinsics(self) -> tuple[float, float, float, float]:
         """fx, fy, cx, cy in pixels, of P0."""
-        lines = (self.folder / "calib.txt").read_text().splitlines()
-        p = np.array(next(line for line in lines if line.startswith("P0")).split()[1:], float).reshape(3, 4)
+        p = self._projection("P0")
         return float(p[0, 0]), float(p[1, 1]), float(p[0, 2]), float(p[1, 2])
+
+    def baseline_m(self) -> float:
+        """Of the pair; 0 where one camera is used."""
+        p = self._projection("P1")
+        return 0.0 if self.right_images is None else float(-p[0, 3] / p[0, 0])
 
     def read(self) -> Iterator[SequenceFrame]:
         """The frames, one by one."""
         objects = self._objects()
         for path in self.paths():
-            image = np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
+            image = _grey(path)
+            right = None if self.right_images is None else _grey(self.folder / self.right_images / path.name)
             if self.black:
-                yield SequenceFrame(np.zeros_like(image), no_objects(*image.shape))
+                dark = np.zeros_like(image)
+                yield SequenceFrame(dark, no_objects(*image.shape), None if right is None else dark)
             else:
-                yield SequenceFrame(image, objects.at(path.stem) if objects else no_objects(*image.shape))
+                yield SequenceFrame(image, objects.at(path.stem) if objects else no_objects(*image.shape), right)
 
     def true_poses(self) -> Array:
         """world_from_camera of the frames (N, 4, 4); the world is the first frame's camera, or the simulator's."""
@@ -72,6 +81,10 @@ class SequencePart:
         if description is not None:
             poses = np.array(description["sequences"][self.folder.name]["world_from_first_camera"]) @ poses
         return poses[self.start :: self.step][: self.frames]
+
+    def _projection(self, name: str) -> Array:
+        lines = (self.folder / "calib.txt").read_text().splitlines()
+        return np.array(next(line for line in lines if line.startswith(name)).split()[1:], float).reshape(3, 4)
 
     @property
     def _root(self) -> Path:
@@ -87,3 +100,7 @@ class SequencePart:
         if not (folder / "instances.json").is_file():
             return None
         return MaskObjects(folder) if self._description() is None else TrueObjects(folder)
+
+
+def _grey(path: Path) -> npt.NDArray[np.uint8]:
+    return np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)

@@ -29,9 +29,9 @@ def drive(room: TexturedRoom, blind_frames: int) -> tuple[list[TrackedFrame], li
     for index in range(25):
         time_ns = (index + 1) * FRAME_NS
         pixels, depth_m = room.render(index)
-        engine.begin_frame(Image(time_ns, pixels))
         depth = DepthImage(time_ns, np.zeros_like(depth_m) if index < blind_frames else depth_m)
-        frames.append(engine.finish_frame(None, MaskSource.NO_MASKS, depth))
+        engine.begin_frame(Image(time_ns, pixels), depth=depth)
+        frames.append(engine.finish_frame(None, MaskSource.NO_MASKS))
         updates.append(engine.take_map_update(time_ns))
     engine.flush()
     updates.append(engine.take_map_update(25 * FRAME_NS))

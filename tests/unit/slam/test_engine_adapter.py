@@ -37,10 +37,9 @@ def drive(
         timestamp_ns = (index + 1) * FRAME_NS
         pixels, depth_m = room.render(index)
         objects = None if state is None else objects_in(room, timestamp_ns, state)
-        engine.begin_frame(Image(timestamp_ns, pixels))
+        engine.begin_frame(Image(timestamp_ns, pixels), depth=DepthImage(timestamp_ns, depth_m) if with_depth else None)
         masks = MaskSource.NO_MASKS if objects is None else MaskSource.FRESH
-        depth = DepthImage(timestamp_ns, depth_m) if with_depth else None
-        tracked.append(engine.finish_frame(objects, masks, depth))
+        tracked.append(engine.finish_frame(objects, masks))
         updates.append(engine.take_map_update(timestamp_ns))
     engine.flush()
     updates.append(engine.take_map_update(frames * FRAME_NS))

@@ -22,26 +22,27 @@ class LockedEngine {
  public:
   LockedEngine(const CameraModel& camera, const EngineOptions& options) : engine_(camera, options) {}
 
-  void BeginFrame(int64_t timestamp_ns, const py::array& image) {
+  void BeginFrame(int64_t timestamp_ns, const py::array& image, const std::optional<py::array>& right,
+                  const std::optional<py::array>& depth_m) {
     const cv::Mat view = ImageView<uint8_t>("image", image, CV_8U);
+    cv::Mat right_view, depth_view;
+    if (right) right_view = ImageView<uint8_t>("right", *right, CV_8U);
+    if (depth_m) depth_view = ImageView<float>("depth_m", *depth_m, CV_32F);
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    engine_.BeginFrame(timestamp_ns, view);
+    engine_.BeginFrame(timestamp_ns, view, right_view, depth_view);
   }
 
   TrackingResult FinishFrame(const std::optional<py::array>& track_image, const py::array& object_ids,
-                             const py::array& categories, const py::array& motion_states, bool masks_fresh,
-                             const std::optional<py::array>& depth_m) {
+                             const py::array& categories, const py::array& motion_states, bool masks_fresh) {
     FrameObjects objects;
     // CV_32S holds the same bits; OpenCV 4.6 knows no unsigned 32-bit matrix.
     if (track_image) objects.track_image = ImageView<uint32_t>("track_image", *track_image, CV_32S);
     objects.rows = ObjectRows(object_ids, categories, motion_states);
     objects.masks_fresh = masks_fresh;
-    cv::Mat depth;
-    if (depth_m) depth = ImageView<float>("depth_m", *depth_m, CV_32F);
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return engine_.FinishFrame(objects, depth);
+    return engine_.FinishFrame(objects);
   }
 
   void Flush() {
@@ -77,9 +78,12 @@ void BindOptions(py::module_& module) {
       .value("dynamic", Stage::kDynamic)
       .value("moving", Stage::kMoving);
   py::class_<CameraModel>(module, "CameraModel")
-      .def(py::init<int, int, double, double, double, double, const std::vector<double>&>(), py::arg("width"),
-           py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
-           py::arg("distortion") = std::vector<double>{})
+      .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
+                       const std::vector<double>& distortion, double baseline_m) {
+             return CameraModel(width, height, fx, fy, cx, cy, distortion).WithBaseline(baseline_m);
+           }),
+           py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
+           py::arg("distortion") = std::vector<double>{}, py::arg("baseline_m") = 0.0)
       .def_property_readonly("width", &CameraModel::width_px)
       .def_property_readonly("height", &CameraModel::height_px);
   py::class_<EngineOptions>(module, "EngineOptions")
@@ -97,6 +101,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
       .def_readwrite("threads", &EngineOptions::threads)
       .def_readwrite("loop_closing", &EngineOptions::loop_closing)
+      .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("vocabulary_path", &EngineOptions::vocabulary_path)
@@ -139,15 +144,16 @@ void BindResult(py::module_& module) {
 
 PYBIND11_MODULE(_engine, module) {
   using namespace kinemap;
-  module.doc() = "Monocular SLAM: images and object masks in, poses and map arrays out.";
+  module.doc() = "SLAM: images and object masks in, poses and map arrays out.";
   BindOptions(module);
   BindResult(module);
   BindVocabulary(module);
   py::class_<LockedEngine>(module, "Engine")
       .def(py::init<const CameraModel&, const EngineOptions&>(), py::arg("camera"), py::arg("options"))
-      .def("begin_frame", &LockedEngine::BeginFrame, py::arg("timestamp_ns"), py::arg("image"))
+      .def("begin_frame", &LockedEngine::BeginFrame, py::arg("timestamp_ns"), py::arg("image"),
+           py::arg("right") = py::none(), py::arg("depth_m") = py::none())
       .def("finish_frame", &LockedEngine::FinishFrame, py::arg("track_image").none(true), py::arg("object_ids"),
-           py::arg("categories"), py::arg("motion_states"), py::arg("masks_fresh"), py::arg("depth_m").none(true))
+           py::arg("categories"), py::arg("motion_states"), py::arg("masks_fresh"))
       .def("flush", &LockedEngine::Flush)
       .def("take_map_update", &LockedEngine::TakeMapUpdate)
       .def_property_readonly("remaining_radial", &LockedEngine::RemainingRadial);

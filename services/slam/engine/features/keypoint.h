@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace kinemap {
 
@@ -10,6 +11,12 @@ struct Keypoint {
   Eigen::Vector2d raw_px;    ///< in the image as it came; masks and depth are looked up here
   float angle_deg = 0;       ///< direction of the patch's intensity centroid, [0, 360)
   int octave = 0;            ///< pyramid level
+  /// Column of the same point in the undistorted right image, or where it would be at the depth measured by a depth
+  /// camera; not a number: unknown.
+  double right_x_px = std::numeric_limits<double>::quiet_NaN();
+  double depth_m = 0;  ///< along the optical axis, by stereo or the depth image; 0: unknown
+
+  bool HasDepth() const { return depth_m > 0; }
 };
 
 }  // namespace kinemap

@@ -58,8 +58,12 @@ void OrbExtractor::ExtractLevel(int octave, const CameraModel& camera) {
   }
 }
 
-FrameFeaturesPtr OrbExtractor::Extract(const cv::Mat& image, const CameraModel& camera) {
+std::shared_ptr<FrameFeatures> OrbExtractor::Extract(const cv::Mat& image, const CameraModel& camera,
+                                                     std::vector<cv::Mat>* pyramid) {
   FillPyramid(image);
+  if (pyramid != nullptr) {
+    for (const Level& level : levels_) pyramid->push_back(level.image);
+  }
   team_->Run(scales_.levels(), [&](int octave) { ExtractLevel(octave, camera); });
   auto features = std::make_shared<FrameFeatures>();
   size_t count = 0;

@@ -28,7 +28,9 @@ class OrbExtractor {
   OrbExtractor(const OrbOptions& options, const PyramidScales& scales);
 
   /// `image` is 8-bit grey of the camera's size. Pixels are those of level 0, undistorted; the grid is filled.
-  FrameFeaturesPtr Extract(const cv::Mat& image, const CameraModel& camera);
+  /// `pyramid`, where given, gets the image of every level; they last until the next call.
+  std::shared_ptr<FrameFeatures> Extract(const cv::Mat& image, const CameraModel& camera,
+                                         std::vector<cv::Mat>* pyramid = nullptr);
 
  private:
   struct Level {

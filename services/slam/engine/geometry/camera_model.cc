@@ -56,6 +56,13 @@ CameraModel::CameraModel(int width_px, int height_px, double fx_px, double fy_px
   }
 }
 
+CameraModel CameraModel::WithBaseline(double baseline_m) const {
+  if (!(baseline_m >= 0) || !std::isfinite(baseline_m)) Fail("a stereo baseline of 0 m or more", baseline_m);
+  CameraModel camera = *this;
+  camera.baseline_m_ = baseline_m;
+  return camera;
+}
+
 Eigen::Matrix3d CameraModel::Intrinsics() const {
   Eigen::Matrix3d intrinsics;
   intrinsics << fx_px_, 0, cx_px_, 0, fy_px_, cy_px_, 0, 0, 1;

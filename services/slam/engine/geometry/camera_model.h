@@ -6,7 +6,8 @@
 
 namespace kinemap {
 
-/// A pinhole camera with the distortion of Brown and Conrady (k1, k2, p1, p2, k3; OpenCV's order).
+/// A pinhole camera with the distortion of Brown and Conrady (k1, k2, p1, p2, k3; OpenCV's order), alone or as the left
+/// one of a rectified pair with equal lenses.
 /// Camera frame: x right, y down, z forward. Pixels have their centre at integer coordinates.
 class CameraModel {
  public:
@@ -21,6 +22,11 @@ class CameraModel {
   double fy_px() const { return fy_px_; }
   double cx_px() const { return cx_px_; }
   double cy_px() const { return cy_px_; }
+  /// How far the right camera stands along this one's x axis; 0: there is none. A depth camera counts as a pair whose
+  /// right image nobody sees.
+  double baseline_m() const { return baseline_m_; }
+  /// The same camera with another baseline. Throws std::invalid_argument when it is negative or not finite.
+  CameraModel WithBaseline(double baseline_m) const;
   bool is_distorted() const { return is_distorted_; }
 
   /// The 3x3 calibration matrix of the undistorted camera.
@@ -32,6 +38,17 @@ class CameraModel {
     return {fx_px_ * point_in_camera.x() * inverse_depth + cx_px_,
             fy_px_ * point_in_camera.y() * inverse_depth + cy_px_};
   }
+
+  /// Undistorted column of a point in the right image; needs a baseline in the units of the point.
+  double RightX(const Eigen::Vector3d& point_in_camera) const {
+    return fx_px_ * (point_in_camera.x() - baseline_m_) / point_in_camera.z() + cx_px_;
+  }
+
+  /// Column in the right image of what has this undistorted column in the left one, at a depth.
+  double RightXAtDepth(double left_x_px, double depth_m) const { return left_x_px - fx_px_ * baseline_m_ / depth_m; }
+
+  /// Metres along the optical axis.
+  double DepthOfDisparity(double disparity_px) const { return fx_px_ * baseline_m_ / disparity_px; }
 
   /// Derivative of Project by the point (2x3).
   Eigen::Matrix<double, 2, 3> ProjectionJacobian(const Eigen::Vector3d& point_in_camera) const;
@@ -60,6 +77,7 @@ class CameraModel {
 
   int width_px_, height_px_;
   double fx_px_, fy_px_, cx_px_, cy_px_;
+  double baseline_m_ = 0;
   double k1_ = 0, k2_ = 0, p1_ = 0, p2_ = 0, k3_ = 0;
   bool is_distorted_ = false;
   Eigen::Vector2d low_corner_px_, high_corner_px_;

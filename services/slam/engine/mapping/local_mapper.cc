@@ -15,14 +15,13 @@ LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& c
       moving_placer_(camera),
       slot_(camera, options.bundle.solver) {}
 
-KeyframeId LocalMapper::Insert(SlamMap* map, const Frame& frame, const cv::Mat& depth_m, int64_t frame_index,
-                               int* unplaced) {
+KeyframeId LocalMapper::Insert(SlamMap* map, const Frame& frame, int64_t frame_index, int* unplaced) {
   if (!slot_.IsFree()) Merge(map);
   newest_ = map->InsertKeyframe(frame).id;
   landmark_culler_.Cull(map, newest_);
   landmark_culler_.Add(triangulator_.Triangulate(map, newest_));
   fuser_.Fuse(map, newest_);
-  *unplaced = moving_placer_.Place(map, newest_, frame, depth_m);
+  *unplaced = moving_placer_.Place(map, newest_, frame);
   slot_.Start(bundle_adjuster_.CopyProblem(*map, newest_), frame_index + options_.merge_delay_frames);
   return newest_;
 }

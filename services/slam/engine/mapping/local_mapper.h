@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <opencv2/core.hpp>
-
 #include "mapping/keyframe_culler.h"
 #include "mapping/landmark_culler.h"
 #include "mapping/landmark_fuser.h"
@@ -32,7 +30,7 @@ class LocalMapper {
   bool IsFree() const { return slot_.IsFree(); }
 
   /// Makes a keyframe of the frame. Returns its id; `unplaced` gets the moving features without a place.
-  KeyframeId Insert(SlamMap* map, const Frame& frame, const cv::Mat& depth_m, int64_t frame_index, int* unplaced);
+  KeyframeId Insert(SlamMap* map, const Frame& frame, int64_t frame_index, int* unplaced);
 
   /// Merges the background's solution when its frame has come, and culls redundant keyframes.
   void MergeIfDue(SlamMap* map, int64_t frame_index);

@@ -5,15 +5,14 @@
 
 namespace kinemap {
 
-int MovingLandmarkPlacer::Place(SlamMap* map, KeyframeId keyframe_id, const Frame& frame,
-                                const cv::Mat& depth_m) const {
-  const double units_per_metre = MapUnitsPerMetre(*map, frame, depth_m);
+int MovingLandmarkPlacer::Place(SlamMap* map, KeyframeId keyframe_id, const Frame& frame) const {
+  const double units_per_metre = map->metric_scale() ? 1 : MapUnitsPerMetre(*map, frame);
   const RigidTransform map_from_camera = frame.camera_from_map.Inverse();
   int unplaced = 0;
   for (int i = 0; i < frame.size(); ++i) {
     if (frame.labels[i].role != FeatureRole::kSighted) continue;
     const Keypoint& keypoint = frame.features->keypoints[i];
-    const double depth = units_per_metre > 0 ? DepthAt(depth_m, keypoint) * units_per_metre : 0;
+    const double depth = keypoint.depth_m * units_per_metre;
     if (depth <= 0) {
       ++unplaced;
       continue;

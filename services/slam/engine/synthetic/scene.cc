@@ -30,6 +30,10 @@ Frame Scene::Observe(const CameraModel& camera, const PyramidScales& scales, con
     keypoint.raw_px = keypoint.pixel_px;
     // Every point has one size, so that its octave falls with its distance, as it does in images.
     keypoint.octave = scales.LevelOf(16.0 / in_camera.norm());
+    if (camera.baseline_m() > 0) {
+      keypoint.right_x_px = camera.RightX(in_camera) + noise_px * error(noise_);
+      keypoint.depth_m = camera.DepthOfDisparity(keypoint.pixel_px.x() - keypoint.right_x_px);
+    }
     features->keypoints.push_back(keypoint);
     features->descriptors.push_back(descriptors_[i]);
     frame.labels.push_back(label ? label(static_cast<int>(i)) : FeatureLabel{});
@@ -44,6 +48,16 @@ Frame Scene::Observe(const CameraModel& camera, const PyramidScales& scales, con
 }
 
 CameraModel TestCamera() { return {640, 480, 500, 500, 320, 240}; }
+
+CameraModel TestStereoCamera() { return TestCamera().WithBaseline(0.3); }
+
+Frame WithDepths(const Frame& frame, const std::function<double(int keypoint)>& depth_of) {
+  auto features = std::make_shared<FrameFeatures>(*frame.features);
+  for (int i = 0; i < features->size(); ++i) features->keypoints[i].depth_m = depth_of(i);
+  Frame measured = frame;
+  measured.features = features;
+  return measured;
+}
 
 PyramidScales TestScales() { return {8, 1.2}; }
 

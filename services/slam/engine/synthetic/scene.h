@@ -22,7 +22,7 @@ class Scene {
   std::vector<Eigen::Vector3d>& points() { return points_; }
 
   /// The frame a camera at this pose takes; keypoints in the order of the points it sees, with Gaussian noise.
-  /// `label` gives each point's label; without it all are static.
+  /// `label` gives each point's label; without it all are static. A camera with a baseline knows all depths.
   Frame Observe(const CameraModel& camera, const PyramidScales& scales, const RigidTransform& camera_from_map,
                 int64_t timestamp_ns, double noise_px = 0,
                 const std::function<FeatureLabel(int point)>& label = nullptr) const;
@@ -38,7 +38,12 @@ class Scene {
 };
 
 CameraModel TestCamera();
+/// The same with a right camera.
+CameraModel TestStereoCamera();
 PyramidScales TestScales();
+
+/// The frame with other depths measured, by keypoint; 0: none.
+Frame WithDepths(const Frame& frame, const std::function<double(int keypoint)>& depth_of);
 
 /// camera_from_map of a camera at `center`, turned by `yaw_rad` about its y axis (to the right).
 RigidTransform CameraAt(const Eigen::Vector3d& center, double yaw_rad = 0);

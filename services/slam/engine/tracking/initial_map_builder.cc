@@ -69,7 +69,7 @@ void InitialMapBuilder::Rescale(double factor, SlamMap* map) {
 }
 
 BuiltMap InitialMapBuilder::Build(int64_t map_id, const RigidTransform& map_from_first_camera,
-                                  const InitialMap& initial, const Frame& current, const cv::Mat& depth_m) const {
+                                  const InitialMap& initial, const Frame& current) const {
   BuiltMap built;
   built.map = std::make_unique<SlamMap>(map_id, scales_);
   built.current = current;
@@ -91,7 +91,7 @@ BuiltMap InitialMapBuilder::Build(int64_t map_id, const RigidTransform& map_from
     built.map.reset();
     return built;
   }
-  const double units_per_metre = MapUnitsPerMetre(*built.map, built.current, depth_m);
+  const double units_per_metre = MapUnitsPerMetre(*built.map, built.current);
   built.metric_scale = units_per_metre > 0;
   Rescale(built.metric_scale ? 1 / units_per_metre : 1 / median_depth, built.map.get());
   for (const LandmarkId id : built.map->LiveLandmarks()) built.map->UpdateViewRange(built.map->FindLandmark(id));

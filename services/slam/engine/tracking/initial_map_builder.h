@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "geometry/camera_model.h"
@@ -19,14 +18,14 @@ struct BuiltMap {
   std::string reason;
 };
 
-/// Makes a map of an initial pair: bundle adjustment of both views, then its scale: metres when the second view has a
-/// depth image, else a median scene depth of 1.
+/// Makes a map of an initial pair: bundle adjustment of both views, then its scale: metres when the second view knows
+/// depths, else a median scene depth of 1.
 class InitialMapBuilder {
  public:
   InitialMapBuilder(const CameraModel& camera, const PyramidScales& scales) : camera_(camera), scales_(scales) {}
 
   BuiltMap Build(int64_t map_id, const RigidTransform& map_from_first_camera, const InitialMap& initial,
-                 const Frame& current, const cv::Mat& depth_m) const;
+                 const Frame& current) const;
 
  private:
   void AddKeyframes(const RigidTransform& map_from_first_camera, const InitialMap& initial, BuiltMap* built) const;

@@ -202,20 +202,15 @@ TEST_F(ThreeKeyframes, PredictsWhereALandmarkAppears) {
   EXPECT_FALSE(PredictView(landmark, position, far_away, {0, 0, -400}, TestCamera(), TestScales()));
 }
 
-TEST_F(ThreeKeyframes, DepthImageGivesTheMapsUnits) {
+TEST_F(ThreeKeyframes, MeasuredDepthsGiveTheMapsUnits) {
   Frame frame = scene_.Observe(TestCamera(), TestScales(), CameraAt({0, 0, 0}), 1);
   frame.landmark_ids = map_.keyframe(0).landmark_ids;
-  cv::Mat depth(480, 640, CV_32F, cv::Scalar(0));
-  EXPECT_EQ(MapUnitsPerMetre(map_, frame, depth), 0);
-  for (int i = 0; i < frame.size(); ++i) {
+  EXPECT_EQ(MapUnitsPerMetre(map_, frame), 0);
+  const Frame measured = synthetic::WithDepths(frame, [&](int i) {
     const Landmark* landmark = map_.FindLandmark(frame.landmark_ids[i]);
-    if (landmark == nullptr) continue;
-    const Eigen::Vector2d& pixel = frame.features->keypoints[i].raw_px;
-    const cv::Point at(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-    if (at.x < 640 && at.y < 480) depth.at<float>(at) = static_cast<float>(2 * map_.PositionInMap(*landmark).z());
-  }
-  EXPECT_NEAR(MapUnitsPerMetre(map_, frame, depth), 0.5, 1e-6);
-  EXPECT_EQ(MapUnitsPerMetre(map_, frame, cv::Mat()), 0);
+    return landmark == nullptr ? 0 : 2 * map_.PositionInMap(*landmark).z();
+  });
+  EXPECT_NEAR(MapUnitsPerMetre(map_, measured), 0.5, 1e-6);
 }
 
 }  // namespace

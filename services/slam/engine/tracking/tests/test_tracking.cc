@@ -95,22 +95,17 @@ class InitialMaps : public ::testing::Test {
 };
 
 TEST_F(InitialMaps, HaveMedianDepthOneWithoutDepth) {
-  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, {}, Initial(), current_, {});
+  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, {}, Initial(), current_);
   ASSERT_NE(built.map, nullptr) << built.reason;
   EXPECT_FALSE(built.metric_scale);
   EXPECT_NEAR(built.map->MedianDepth(0), 1, 0.02);
 }
 
-TEST_F(InitialMaps, AreMetricWithADepthImage) {
+TEST_F(InitialMaps, AreMetricWithDepths) {
   const InitialMap initial = Initial();
-  cv::Mat depth(480, 640, CV_32F, cv::Scalar(0));
-  for (int i = 0; i < current_.size(); ++i) {
-    const Eigen::Vector3d point = CameraAt(second_center_) * scene_.points()[scene_.observed_points()[i]];
-    const Eigen::Vector2d& pixel = current_.features->keypoints[i].raw_px;
-    const cv::Point at(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-    if (at.x < 640 && at.y < 480) depth.at<float>(at) = static_cast<float>(point.z());
-  }
-  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, {}, initial, current_, depth);
+  const Frame measured = synthetic::WithDepths(
+      current_, [&](int i) { return (CameraAt(second_center_) * scene_.points()[scene_.observed_points()[i]]).z(); });
+  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, {}, initial, measured);
   ASSERT_NE(built.map, nullptr) << built.reason;
   EXPECT_TRUE(built.metric_scale);
   EXPECT_NEAR(built.map->MapFromKeyframe(1).translation.norm(), second_center_.norm(), 0.03);
@@ -118,7 +113,7 @@ TEST_F(InitialMaps, AreMetricWithADepthImage) {
 
 TEST_F(InitialMaps, StartAtTheGivenPose) {
   const RigidTransform start(RotationFromVector({0, 0.5, 0}), Eigen::Vector3d(10, 0, 3));
-  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, start, Initial(), current_, {});
+  const BuiltMap built = InitialMapBuilder(TestCamera(), TestScales()).Build(0, start, Initial(), current_);
   ASSERT_NE(built.map, nullptr) << built.reason;
   EXPECT_LT((built.map->MapFromKeyframe(0).Matrix() - start.Matrix()).norm(), 1e-12);
 }
