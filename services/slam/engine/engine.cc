@@ -56,8 +56,8 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       map_builder_(camera, scales_),
       tracker_({}, camera),
       keyframe_policy_({}),
-      mapper_(MapperOptions(options), camera),
-      atlas_(options.map_id, scales_) {
+      atlas_(options.map_id, scales_),
+      mapper_(MapperOptions(options), camera) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -68,8 +68,16 @@ void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image) {
                                 std::to_string(timestamp_ns));
   }
   const Stopwatch stopwatch;
+  mapper_.StartMapping();
   FrameFeaturesPtr features = extractor_.Extract(image, camera_);
   begun_ = BegunFrame{timestamp_ns, std::move(features), stopwatch.ElapsedMs()};
+}
+
+void Engine::FinishMapping() {
+  mapper_.FinishMapping();
+  // With the keyframe come the landmarks it was the first to see.
+  if (new_keyframe_) tracker_.FollowKeyframe(*map(), *new_keyframe_);
+  new_keyframe_.reset();
 }
 
 Frame Engine::MakeFrame(const FrameObjects& objects) {
@@ -101,6 +109,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects, const cv::Mat& d
     Initialize(&frame, depth_m, &result);
   } else {
     const Stopwatch stopwatch;
+    FinishMapping();
     mapper_.MergeIfDue(map(), frame_index_);
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     if (options_.stage == Stage::kMoving && objects.masks_fresh) {
@@ -185,7 +194,7 @@ void Engine::Track(Frame* frame, const cv::Mat& depth_m, TrackingResult* result)
     frame->reference_keyframe_id = mapper_.Insert(map(), *frame, depth_m, frame_index_, &result->moving_unplaced);
     frame->camera_from_map = camera_from_map;
     last_keyframe_index_ = frame_index_;
-    tracker_.FollowKeyframe(*map(), frame->reference_keyframe_id);
+    new_keyframe_ = frame->reference_keyframe_id;
     result->keyframe_inserted = true;
     result->stage_ms.mapping_ms = stopwatch.ElapsedMs();
   }
@@ -214,13 +223,18 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 }
 
 void Engine::Flush() {
+  FinishMapping();
   if (map() != nullptr) mapper_.Finish(map());
 }
 
 MapUpdate Engine::TakeUpdate() {
   const std::vector<LateFramePose> late_frames = std::move(late_frames_);
   late_frames_.clear();
-  return TakeMapUpdate(map(), late_frames);
+  // Only what has begun is waited for.
+  mapper_.WaitForMapping();
+  MapUpdate update = TakeMapUpdate(map(), late_frames);
+  mapper_.StartMapping();
+  return update;
 }
 
 }  // namespace kinemap

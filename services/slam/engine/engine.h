@@ -49,10 +49,13 @@ class Engine {
   /// Radial distortion k that Flush found on top of the calibration; 0 before. A perfect calibration gives 0.
   double remaining_radial() const { return mapper_.remaining_radial(); }
 
-  /// Everything that changed since the last call.
+  /// Everything that changed since the last call. What is mapped around a keyframe in the background begins with the
+  /// next call of this or of BeginFrame, and so is reported after the next frame; nothing is left after Flush.
   MapUpdate TakeUpdate();
 
  private:
+  /// Gives the maps back to the caller's thread; public methods begin with it, but BeginFrame and TakeUpdate.
+  void FinishMapping();
   Frame MakeFrame(const FrameObjects& objects);
   void Initialize(Frame* frame, const cv::Mat& depth_m, TrackingResult* result);
   void FillWaitingFrames(const Frame& first, const Frame& current);
@@ -70,9 +73,9 @@ class Engine {
   InitialMapBuilder map_builder_;
   CameraTracker tracker_;
   KeyframePolicy keyframe_policy_;
+  Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
   ObjectStates object_states_;
-  Atlas atlas_;
 
   struct BegunFrame {
     int64_t timestamp_ns;
@@ -83,7 +86,8 @@ class Engine {
   std::optional<int64_t> last_timestamp_ns_;
   int64_t frame_index_ = -1;
   int64_t last_keyframe_index_ = 0;
-  std::deque<Frame> waiting_;  // frames before the map existed
+  std::optional<KeyframeId> new_keyframe_;  // that the last frame became
+  std::deque<Frame> waiting_;               // frames before the map existed
   std::vector<LateFramePose> late_frames_;
 };
 
