@@ -70,8 +70,8 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       map_builder_(camera_, scales_),
       tracker_(TrackerOptions(options), camera_, &places_),
       keyframe_policy_({}),
-      mapper_(MapperOptions(options), camera_),
       atlas_(options.map_id, scales_),
+      mapper_(MapperOptions(options), camera_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
       loop_closer_(ClosingOptions(options), camera_) {
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
@@ -89,8 +89,16 @@ void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Ma
                                 std::to_string(timestamp_ns));
   }
   const Stopwatch stopwatch;
+  mapper_.StartMapping();
   FrameFeaturesPtr features = extractor_.Extract(image, right, depth_m);
   begun_ = BegunFrame{timestamp_ns, std::move(features), stopwatch.ElapsedMs()};
+}
+
+void Engine::FinishMapping() {
+  mapper_.FinishMapping();
+  // With the keyframe come the landmarks it was the first to see.
+  if (new_keyframe_) tracker_.FollowKeyframe(*map(), *new_keyframe_);
+  new_keyframe_.reset();
 }
 
 Frame Engine::MakeFrame(const FrameObjects& objects) {
@@ -120,16 +128,18 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
     Initialize(&frame, &result);
   } else {
     const Stopwatch stopwatch;
+    const std::optional<KeyframeId> mapped = new_keyframe_;
+    FinishMapping();
     mapper_.MergeIfDue(map(), frame_index_);
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     MergeLoops(&result);
+    places_.Follow(map());
+    if (mapped) LookForLoops(*mapped, &result);
     if (options_.stage == Stage::kMoving && objects.masks_fresh) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, &result);
   }
-  if (map() != nullptr) places_.Follow(map());
-  LookForLoops(frame, &result);
   result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
 }
@@ -207,7 +217,7 @@ void Engine::Track(Frame* frame, TrackingResult* result) {
     frame->reference_keyframe_id = mapper_.Insert(map(), *frame, frame_index_, &result->moving_unplaced);
     frame->camera_from_map = camera_from_map;
     last_keyframe_index_ = frame_index_;
-    tracker_.FollowKeyframe(*map(), frame->reference_keyframe_id);
+    new_keyframe_ = frame->reference_keyframe_id;
     result->keyframe_inserted = true;
     result->stage_ms.mapping_ms = stopwatch.ElapsedMs();
   }
@@ -226,10 +236,10 @@ void Engine::MergeLoops(TrackingResult* result) {
   result->stage_ms.background_ms = events.background_ms;
 }
 
-void Engine::LookForLoops(const Frame& frame, TrackingResult* result) {
-  if (!options_.loop_closing || !places_.has_vocabulary() || !result->keyframe_inserted) return;
+void Engine::LookForLoops(KeyframeId mapped, TrackingResult* result) {
+  if (!options_.loop_closing || !places_.has_vocabulary()) return;
   const Stopwatch stopwatch;
-  loop_closer_.Look(&atlas_, places_, frame.reference_keyframe_id, frame_index_);
+  loop_closer_.Look(&atlas_, places_, mapped, frame_index_);
   result->stage_ms.loop_ms += stopwatch.ElapsedMs();
 }
 
@@ -255,6 +265,7 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 }
 
 void Engine::Flush() {
+  FinishMapping();
   if (map() == nullptr) return;
   mapper_.Settle(map());
   loop_closer_.Settle(&atlas_);
@@ -264,7 +275,11 @@ void Engine::Flush() {
 MapUpdate Engine::TakeUpdate() {
   const std::vector<LateFramePose> late_frames = std::move(late_frames_);
   late_frames_.clear();
-  return TakeMapUpdate(map(), late_frames);
+  // Only what has begun is waited for.
+  mapper_.WaitForMapping();
+  MapUpdate update = TakeMapUpdate(map(), late_frames);
+  mapper_.StartMapping();
+  return update;
 }
 
 }  // namespace kinemap

@@ -53,10 +53,13 @@ class Engine {
   /// Radial distortion k that Flush found on top of the calibration; 0 before. A perfect calibration gives 0.
   double remaining_radial() const { return mapper_.remaining_radial(); }
 
-  /// Everything that changed since the last call.
+  /// Everything that changed since the last call. What is mapped around a keyframe in the background begins with the
+  /// next call of this or of BeginFrame, and so is reported after the next frame; nothing is left after Flush.
   MapUpdate TakeUpdate();
 
  private:
+  /// Gives the maps back to the caller's thread; public methods begin with it, but BeginFrame and TakeUpdate.
+  void FinishMapping();
   Frame MakeFrame(const FrameObjects& objects);
   void Initialize(Frame* frame, TrackingResult* result);
   void FillWaitingFrames(const Frame& first, const Frame& current);
@@ -64,7 +67,7 @@ class Engine {
   SlamMap* map() { return atlas_.active(); }
   const SlamMap* map() const { return atlas_.active(); }
   void MergeLoops(TrackingResult* result);
-  void LookForLoops(const Frame& frame, TrackingResult* result);
+  void LookForLoops(KeyframeId mapped, TrackingResult* result);
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
@@ -77,9 +80,9 @@ class Engine {
   InitialMapBuilder map_builder_;
   CameraTracker tracker_;
   KeyframePolicy keyframe_policy_;
+  Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
   ObjectStates object_states_;
-  Atlas atlas_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;
 
@@ -92,7 +95,8 @@ class Engine {
   std::optional<int64_t> last_timestamp_ns_;
   int64_t frame_index_ = -1;
   int64_t last_keyframe_index_ = 0;
-  std::deque<Frame> waiting_;  // frames before the map existed
+  std::optional<KeyframeId> new_keyframe_;  // that the last frame became
+  std::deque<Frame> waiting_;               // frames before the map existed
   std::vector<LateFramePose> late_frames_;
 };
 

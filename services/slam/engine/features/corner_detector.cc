@@ -2,6 +2,7 @@
 #include "features/corner_detector.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "features/fast_score.h"
@@ -31,12 +32,6 @@ KINEMAP_DISPATCH(MarkMaxima,
                   uint8_t threshold, uint8_t* is_maximum),
                  (above, scores, below, first, last, threshold, is_maximum))
 
-/// Top of the parabola through three scores, of which the middle one is the largest.
-float ParabolaTop(int before, int middle, int after) {
-  const int curvature = 2 * middle - before - after;
-  return curvature > 0 ? 0.5f * static_cast<float>(after - before) / static_cast<float>(curvature) : 0.0f;
-}
-
 }  // namespace
 
 const std::vector<Corner>& CornerDetector::Detect(const cv::Mat& image, int border_px) {
@@ -62,12 +57,11 @@ void CornerDetector::FindMaxima(const cv::Mat& image, int border_px) {
     for (int x = border_px; x < last; x += static_cast<int>(sizeof(uint64_t))) {
       uint64_t eight;
       std::memcpy(&eight, is_maximum_.data() + x, sizeof(eight));
-      if (eight == 0) continue;
-      for (int column = x; column < std::min(last, x + static_cast<int>(sizeof(eight))); ++column) {
-        if (!is_maximum_[column]) continue;
-        corners_.push_back({column, row, scores[column],
-                            ParabolaTop(scores[column - 1], scores[column], scores[column + 1]),
-                            ParabolaTop(above[column], scores[column], below[column])});
+      static_assert(std::endian::native == std::endian::little);
+      for (; eight != 0; eight &= eight - 1) {
+        const int column = x + std::countr_zero(eight) / 8;
+        corners_.push_back({static_cast<int16_t>(column), static_cast<int16_t>(row), scores[column], scores[column - 1],
+                            scores[column + 1], above[column], below[column]});
       }
     }
   }

@@ -5,10 +5,6 @@
 #include <cmath>
 
 namespace kinemap {
-namespace {
-constexpr double kCellSizePx = 20;
-}
-
 KeypointGrid::KeypointGrid(const std::vector<Keypoint>& keypoints, const Eigen::Vector2d& low_corner_px,
                            const Eigen::Vector2d& high_corner_px)
     : low_x_px_(low_corner_px.x()), low_y_px_(low_corner_px.y()) {

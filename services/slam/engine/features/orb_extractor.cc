@@ -48,8 +48,8 @@ void OrbExtractor::ExtractLevel(int octave, const CameraModel& camera) {
   for (const Corner& corner : DistributeEvenly(corners, area, level.features)) {
     Keypoint keypoint;
     // Resizing maps pixel centres by (x + 0.5) s - 0.5.
-    keypoint.raw_px = {(corner.column + corner.column_offset + 0.5) * scale_x - 0.5,
-                       (corner.row + corner.row_offset + 0.5) * scale_y - 0.5};
+    keypoint.raw_px = {(corner.column + corner.ColumnOffset() + 0.5) * scale_x - 0.5,
+                       (corner.row + corner.RowOffset() + 0.5) * scale_y - 0.5};
     keypoint.pixel_px = camera.Undistort(keypoint.raw_px);
     keypoint.angle_deg = orientation_.AngleDeg(level.image, corner.column, corner.row);
     keypoint.octave = octave;

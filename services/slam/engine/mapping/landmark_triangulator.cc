@@ -12,8 +12,8 @@ namespace {
 constexpr double kEpipolarBound = 3.841;      // 95 % of chi-squared, one degree of freedom
 constexpr double kReprojectionBound = 5.991;  // two degrees of freedom
 constexpr double kEpipoleBound = 100;         // squared pixels: near the epipole a line tells nothing
-constexpr double kWindowPx = 10;
-constexpr double kScaleTolerance = 1.5;  // times one octave's factor
+constexpr double kMarginPx = 10;              // beyond both ends and, at the coarsest octave, beside the line
+constexpr double kScaleTolerance = 1.5;       // times one octave's factor
 
 bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
   if (a.role != b.role) return false;
@@ -67,29 +67,21 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
   const double nearest = std::max(pair.nearest_depth, (pair.nearest_depth - offset.z()) / direction.z());
   const Eigen::Vector2d near_px = camera_.Project(nearest * direction + offset);
   const Eigen::Vector2d far_px = camera_.Project(direction);
-  const Eigen::Vector2d segment = near_px - far_px;
-  const int steps = static_cast<int>(std::ceil(segment.cwiseAbs().maxCoeff() / (2 * kWindowPx)));
+  Eigen::Vector3d line = pair.fundamental * point.pixel_px.homogeneous();
+  line /= line.head<2>().norm();
   int best = -1, best_distance = kStrictHammingDistance;
-  std::vector<int> nearby;
-  for (int step = 0; step <= steps; ++step) {
-    const Eigen::Vector2d center = far_px + segment * (steps == 0 ? 0.0 : static_cast<double>(step) / steps);
-    if (!camera_.Contains(center)) continue;
-    pair.second.features->grid.FindNear(center, kWindowPx, 0, pair.scales.levels(), &nearby);
-    for (const int j : nearby) {
-      if (taken[j] || !MayMatch(pair.first.labels[keypoint], pair.second.labels[j])) continue;
-      const int distance = HammingDistance(descriptor, pair.second.features->descriptors[j]);
-      if (distance >= best_distance) continue;
-      const Keypoint& candidate = pair.second.features->keypoints[j];
-      const double scale = pair.scales.scale(candidate.octave);
-      if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) continue;
-      if (SquaredEpipolarDistance(pair.fundamental, point.pixel_px, candidate.pixel_px) >=
-          kEpipolarBound * scale * scale) {
-        continue;
-      }
-      best = j;
-      best_distance = distance;
-    }
-  }
+  pair.second.features->grid.VisitAlong(far_px, near_px, kMarginPx, [&](const KeypointGrid::Entry& entry) {
+    const double scale = pair.scales.scale(entry.octave);
+    const double off_line = line.x() * entry.x_px + line.y() * entry.y_px + line.z();
+    if (off_line * off_line >= kEpipolarBound * scale * scale || taken[entry.index]) return;
+    if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
+    const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
+    if (distance >= best_distance) return;
+    const Eigen::Vector2d& pixel = pair.second.features->keypoints[entry.index].pixel_px;
+    if (pair.has_epipole && (pixel - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
+    best = entry.index;
+    best_distance = distance;
+  });
   return best;
 }
 

@@ -16,17 +16,39 @@ LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& c
       slot_(camera, options.bundle.solver) {}
 
 KeyframeId LocalMapper::Insert(SlamMap* map, const Frame& frame, int64_t frame_index, int* unplaced) {
+  FinishMapping();
   if (!slot_.IsFree()) Merge(map);
   newest_ = map->InsertKeyframe(frame).id;
-  landmark_culler_.Cull(map, newest_);
-  landmark_culler_.Add(triangulator_.Triangulate(map, newest_));
-  fuser_.Fuse(map, newest_);
   *unplaced = moving_placer_.Place(map, newest_, frame);
-  slot_.Start(bundle_adjuster_.CopyProblem(*map, newest_), frame_index + options_.merge_delay_frames);
+  waiting_ = Waiting{map, newest_, frame_index + options_.merge_delay_frames};
   return newest_;
 }
 
+void LocalMapper::MapAround(SlamMap* map, KeyframeId keyframe_id, int64_t due_frame) {
+  landmark_culler_.Cull(map, keyframe_id);
+  landmark_culler_.Add(triangulator_.Triangulate(map, keyframe_id));
+  fuser_.Fuse(map, keyframe_id);
+  slot_.Start(bundle_adjuster_.CopyProblem(*map, keyframe_id), due_frame);
+}
+
+void LocalMapper::StartMapping() {
+  if (!waiting_) return;
+  const Waiting work = *waiting_;
+  waiting_.reset();
+  running_ = std::async(std::launch::async, [this, work] { MapAround(work.map, work.keyframe_id, work.due_frame); });
+}
+
+void LocalMapper::WaitForMapping() {
+  if (running_.valid()) running_.get();
+}
+
+void LocalMapper::FinishMapping() {
+  StartMapping();
+  WaitForMapping();
+}
+
 void LocalMapper::MergeIfDue(SlamMap* map, int64_t frame_index) {
+  FinishMapping();
   if (slot_.IsDue(frame_index)) Merge(map);
 }
 
@@ -41,6 +63,7 @@ void LocalMapper::Merge(SlamMap* map) {
 }
 
 void LocalMapper::Finish(SlamMap* map) {
+  FinishMapping();
   if (!slot_.IsFree()) Merge(map);
   if (newest_ == kNoId) return;
   const std::vector<KeyframeId> live = map->LiveKeyframes();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <future>
+#include <optional>
+
 #include "mapping/keyframe_culler.h"
 #include "mapping/landmark_culler.h"
 #include "mapping/landmark_fuser.h"
@@ -21,16 +24,27 @@ struct LocalMapperOptions {
   BundleOptions final_bundle{20, 20, 1e-8, 0.01};
 };
 
-/// Everything that happens around a keyframe: culling, triangulation and fusion at once, bundle adjustment in the
-/// background, merged a fixed number of frames later.
+/// Everything that happens around a keyframe, in the background: culling, triangulation and fusion until the next frame
+/// is tracked, bundle adjustment on a copy, merged a fixed number of frames later.
 class LocalMapper {
  public:
   LocalMapper(const LocalMapperOptions& options, const CameraModel& camera);
 
   bool IsFree() const { return slot_.IsFree(); }
 
-  /// Makes a keyframe of the frame. Returns its id; `unplaced` gets the moving features without a place.
+  /// Makes a keyframe of the frame, around which there is then something to map. Returns its id; `unplaced` gets the
+  /// moving features without a place.
   KeyframeId Insert(SlamMap* map, const Frame& frame, int64_t frame_index, int* unplaced);
+
+  /// Lets another thread map around the keyframe inserted last, unless that has begun or there is none. From here to
+  /// WaitForMapping nobody else may touch the map.
+  void StartMapping();
+
+  /// Returns the map when what was started has ended; throws what it threw.
+  void WaitForMapping();
+
+  /// All that there is to map around the newest keyframe is mapped after this; the calls below begin with it.
+  void FinishMapping();
 
   /// Merges the background's solution when its frame has come, and culls redundant keyframes.
   void MergeIfDue(SlamMap* map, int64_t frame_index);
@@ -47,6 +61,14 @@ class LocalMapper {
 
  private:
   void Merge(SlamMap* map);
+  void MapAround(SlamMap* map, KeyframeId keyframe_id, int64_t due_frame);
+
+  /// What StartMapping is to do.
+  struct Waiting {
+    SlamMap* map;
+    KeyframeId keyframe_id;
+    int64_t due_frame;
+  };
 
   LocalMapperOptions options_;
   CameraModel camera_;
@@ -59,6 +81,8 @@ class LocalMapper {
   MergeSlot slot_;
   KeyframeId newest_ = kNoId;
   double remaining_radial_ = 0;
+  std::optional<Waiting> waiting_;
+  std::future<void> running_;  // last, so that it ends before what it uses
 };
 
 }  // namespace kinemap

@@ -34,7 +34,6 @@ void CameraTracker::Start(const SlamMap& map, const Frame& frame, const std::opt
 
 void CameraTracker::FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id) {
   last_.reference_keyframe_id = keyframe_id;
-  // With the keyframe come the landmarks it was the first to see.
   last_.landmark_ids = map.keyframe(keyframe_id).landmark_ids;
   last_from_reference_ = map.CameraFromReference(last_.camera_from_map, keyframe_id);
   last_scale_ = map.MapFromAnchor(keyframe_id).scale;

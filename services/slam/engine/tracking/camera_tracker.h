@@ -44,7 +44,7 @@ class CameraTracker {
   /// Starts following from a frame whose pose is known; `previous` (camera_from_map of the frame before) gives a speed.
   void Start(const SlamMap& map, const Frame& frame, const std::optional<RigidTransform>& previous);
 
-  /// The frame just tracked became this keyframe: from now on it moves with it.
+  /// The last frame became this keyframe: it moves with it and has its landmarks.
   void FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id);
 
   int frames_since_relocalization() const { return frames_since_relocalization_; }

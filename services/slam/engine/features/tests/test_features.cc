@@ -106,8 +106,10 @@ TEST(OrbExtractor, UndistortsItsKeypoints) {
 
 TEST(KeypointDistribution, KeepsTheStrongestOfEachPart) {
   std::vector<Corner> corners;
-  for (int i = 0; i < 100; ++i) corners.push_back({10 + i % 10, 10 + i / 10, i, 0, 0});
-  corners.push_back({300, 300, 1, 0, 0});
+  for (uint8_t i = 0; i < 100; ++i) {
+    corners.push_back({static_cast<int16_t>(10 + i % 10), static_cast<int16_t>(10 + i / 10), i, 0, 0, 0, 0});
+  }
+  corners.push_back({300, 300, 1, 0, 0, 0, 0});
   const std::vector<Corner> chosen = DistributeEvenly(corners, {0, 0, 640, 480}, 2);
   ASSERT_GE(chosen.size(), 2u);
   EXPECT_TRUE(std::any_of(chosen.begin(), chosen.end(), [](const Corner& corner) { return corner.score == 99; }));
@@ -115,7 +117,7 @@ TEST(KeypointDistribution, KeepsTheStrongestOfEachPart) {
 }
 
 TEST(KeypointDistribution, EndsWhenCornersShareOnePlace) {
-  const std::vector<Corner> corners(50, Corner{100, 100, 1, 0, 0});
+  const std::vector<Corner> corners(50, Corner{100, 100, 1, 0, 0, 0, 0});
   EXPECT_EQ(DistributeEvenly(corners, {0, 0, 640, 480}, 10).size(), 1u);
 }
 
@@ -140,6 +142,30 @@ TEST(KeypointGrid, FindsWhatAFullSearchFinds) {
     }
     EXPECT_EQ(std::set<int>(found.begin(), found.end()), expected);
     EXPECT_EQ(found.size(), expected.size());
+  }
+}
+
+TEST(KeypointGrid, VisitsAllNearASegmentOnce) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(-20, 660), y(-20, 500), beyond(-900, 1500);
+  std::vector<Keypoint> keypoints(2000);
+  for (Keypoint& keypoint : keypoints) keypoint.pixel_px = {x(random), y(random)};
+  const KeypointGrid grid(keypoints, {-20, -20}, {660, 500});
+  for (int trial = 0; trial < 200; ++trial) {
+    const Eigen::Vector2d from(x(random), y(random));
+    const Eigen::Vector2d to = trial % 10 == 0 ? from : Eigen::Vector2d(beyond(random), beyond(random));
+    std::vector<int> visits(keypoints.size(), 0);
+    grid.VisitAlong(from, to, 8, [&](const KeypointGrid::Entry& entry) { ++visits[entry.index]; });
+    int visited = 0;
+    for (size_t i = 0; i < keypoints.size(); ++i) {
+      ASSERT_LE(visits[i], 1);
+      visited += visits[i];
+      const Eigen::Vector2d way = to - from, offset = keypoints[i].pixel_px - from;
+      const double part = way.squaredNorm() > 0 ? std::clamp(offset.dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
+      const bool near = (offset - part * way).norm() < 8;
+      ASSERT_TRUE(visits[i] == 1 || !near) << "trial " << trial << " keypoint " << i;
+    }
+    EXPECT_LT(visited, 1000);
   }
 }
 
