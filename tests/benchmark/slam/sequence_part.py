@@ -57,8 +57,10 @@ class SequencePart:
 
     def baseline_m(self) -> float:
         """Of the pair; 0 where one camera is used."""
+        if self.right_images is None:
+            return 0.0
         p = self._projection("P1")
-        return 0.0 if self.right_images is None else float(-p[0, 3] / p[0, 0])
+        return float(-p[0, 3] / p[0, 0])
 
     def read(self) -> Iterator[SequenceFrame]:
         """The frames, one by one."""

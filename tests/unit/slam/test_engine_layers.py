@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine's layers include downwards only; tracking and mapping never meet."""
+"""The engine's layers include downwards only; tracking, mapping and loop closing never meet."""
 
 import re
 from pathlib import Path
@@ -16,6 +16,7 @@ BELOW = {
     "optimization": {"geometry", "features", "map"},
     "tracking": {"geometry", "features", "map", "optimization"},
     "mapping": {"geometry", "features", "map", "optimization"},
+    "loop_closing": {"geometry", "features", "map", "optimization"},
 }
 
 
@@ -34,7 +35,7 @@ def test_a_layer_includes_only_what_lies_below_it(layer: str) -> None:
 
 def test_every_folder_of_sources_is_a_known_layer() -> None:
     folders = {folder.name for folder in ENGINE.iterdir() if folder.is_dir()}
-    assert folders == BELOW.keys() | {"bindings", "synthetic"}
+    assert folders == BELOW.keys() | {"bindings", "synthetic", "fuzz"}
 
 
 def test_only_the_bindings_know_python() -> None:

@@ -48,8 +48,7 @@ void AddLandmarks(ByteSource* source, KeyframeId keyframe_id, SlamMap* map) {
     if (source->TakeInt(0, 2) == 0) continue;
     const Keyframe& keyframe = map->keyframe(keyframe_id);
     const Eigen::Vector3d in_camera(source->TakeReal(-5, 5), source->TakeReal(-5, 5), source->TakeReal(-2, 40));
-    Landmark& landmark =
-        map->CreateLandmark(keyframe.map_from_keyframe * in_camera, keyframe_id, keyframe.labels[i]);
+    Landmark& landmark = map->CreateLandmark(keyframe.map_from_keyframe * in_camera, keyframe_id, keyframe.labels[i]);
     map->Observe(&landmark, keyframe_id, i);
     map->UpdateDescriptor(&landmark);
     map->UpdateViewRange(&landmark);
