@@ -18,8 +18,14 @@ class Stage:
     @property
     def value(self) -> int: ...
 
+class Lens:
+    """What the coefficients of a camera's distortion mean: k1, k2, p1, p2, k3 or a fisheye's k1, k2, k3, k4."""
+
+    plumb_bob: ClassVar[Lens]
+    kannala_brandt: ClassVar[Lens]
+
 class CameraModel:
-    """A pinhole camera; pixels; `distortion` holds 0, 4 or 5 of k1, k2, p1, p2, k3. ValueError for what is none.
+    """A pinhole camera behind a lens; pixels; `distortion` holds 0, 4 or 5 numbers. ValueError for what is none.
 
     With a baseline it is the left one of a rectified pair whose right camera stands `baseline_m` along its x axis.
     """
@@ -34,6 +40,7 @@ class CameraModel:
         cy: float,
         distortion: Sequence[float] = ...,
         baseline_m: float = ...,
+        lens: Lens = ...,
     ) -> None: ...
     @property
     def width(self) -> int: ...

@@ -17,11 +17,11 @@ from schemas.records.objects import Objects
 from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
 from services.runtime.errors import InputError
 from services.slam import _engine
-from services.slam.depth_scale import DepthScale
 from services.slam.vocabulary import SHIPPED_VOCABULARY
 
 Stage = Literal["base", "dynamic", "moving"]
 
+_LENSES = {"plumb_bob": _engine.Lens.plumb_bob, "kannala_brandt": _engine.Lens.kannala_brandt}
 _OPTICAL_IN_REP103 = (0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 
 
@@ -64,9 +64,6 @@ class SlamEngine:
         """
         self._settings = settings or EngineSettings()
         self._metric_scale = False
-        self._depth_scale = DepthScale(calibration, self._settings.map_from_first_camera[:3])
-        self._depth: DepthImage | None = None
-        self._measured: tuple[npt.NDArray[np.float64], DepthImage] | None = None
         with _input_errors():
             self._engine = _engine.Engine(_camera_model(calibration, right), _engine_options(self._settings))
 
@@ -76,7 +73,6 @@ class SlamEngine:
         A frame begun but not finished is replaced. InputError when a size is not the calibration's, a right image comes
         to an engine that does not know the right camera, or the time is not after the last frame's.
         """
-        self._depth = depth
         with _input_errors():
             self._engine.begin_frame(
                 image.timestamp_ns,
@@ -89,7 +85,7 @@ class SlamEngine:
         """Track and map the frame begun last.
 
         Masks that are not fresh keep every object out of tracking, whatever its state (in the stages that know
-        objects). A map whose first frames saw too little depth becomes metric by a later keyframe's (`DepthScale`).
+        objects).
         InputError for arrays of another size; RuntimeError when no frame was begun.
         """
         rows = () if objects is None else objects.objects
@@ -101,12 +97,8 @@ class SlamEngine:
                 np.array([row.motion_state for row in rows], np.uint8),
                 masks is MaskSource.FRESH,
             )
-        in_units = self._tracked_frame(result, masks)
-        self._measured, depth = None, self._depth
-        if depth is not None and in_units.keyframe_inserted and in_units.map_from_camera is not None:
-            self._measured = (in_units.map_from_camera, depth)
         self._metric_scale = result.metric_scale
-        return in_units if result.metric_scale else self._depth_scale.frame(in_units)
+        return self._tracked_frame(result, masks)
 
     def flush(self) -> None:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
@@ -119,19 +111,12 @@ class SlamEngine:
 
     def take_map_update(self, timestamp_ns: int) -> MapUpdate:
         """Everything of the map that changed since the last call, under the time of the newest frame."""
-        in_units = MapUpdate(
+        return MapUpdate(
             timestamp_ns=timestamp_ns,
             map_id=self._settings.map_id,
             metric_scale=self._metric_scale,
             **self._engine.take_map_update(),
         )
-        if self._metric_scale:
-            return in_units
-        update = self._depth_scale.update(in_units)
-        if self._measured is not None:
-            self._depth_scale.look(in_units, *self._measured)
-            self._measured = None
-        return update
 
     def _tracked_frame(self, result: _engine.TrackingResult, masks: MaskSource) -> TrackedFrame:
         state = TrackingState(result.state)
@@ -167,8 +152,8 @@ def _input_errors() -> Iterator[None]:
 
 
 def _camera_model(calibration: CameraCalibration, right: CameraCalibration | None) -> _engine.CameraModel:
-    if calibration.distortion and calibration.distortion_model != "plumb_bob":
-        raise InputError(f"lens {calibration.distortion_model}: expected plumb_bob, or images without distortion")
+    # An image without distortion is a pinhole's, whatever lens it had.
+    lens = _engine.Lens.plumb_bob if not calibration.distortion else _LENSES[calibration.distortion_model]
     k = calibration.intrinsics
     return _engine.CameraModel(
         calibration.width,
@@ -179,6 +164,7 @@ def _camera_model(calibration: CameraCalibration, right: CameraCalibration | Non
         float(k[1, 2]),
         list(calibration.distortion),
         0.0 if right is None else _baseline_m(calibration, right),
+        lens,
     )
 
 

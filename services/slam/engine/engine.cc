@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "map/measured_landmarks.h"
 #include "tracking/frame_matcher.h"
 
 namespace kinemap {
@@ -61,13 +62,14 @@ void CheckSize(const char* name, const cv::Mat& image, const CameraModel& camera
 
 Engine::Engine(const CameraModel& camera, const EngineOptions& options)
     : has_right_camera_(camera.baseline_m() > 0),
-      camera_(has_right_camera_ ? camera : camera.WithBaseline(Checked(options).depth_baseline_m)),
+      camera_(has_right_camera_ ? camera : camera.WithDepthBaseline(Checked(options).depth_baseline_m)),
       options_(Checked(options)),
       scales_(options.pyramid_levels, options.pyramid_factor),
       extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_,
                  camera_),
       initializer_({}, camera_),
       map_builder_(camera_, scales_),
+      single_frame_builder_(camera_, scales_),
       tracker_(TrackerOptions(options), camera_, &places_),
       keyframe_policy_({}),
       atlas_(options.map_id, scales_),
@@ -131,6 +133,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
     const std::optional<KeyframeId> mapped = new_keyframe_;
     FinishMapping();
     mapper_.MergeIfDue(map(), frame_index_);
+    MakeMetricIfFound();
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     MergeLoops(&result);
     places_.Follow(map());
@@ -147,38 +150,57 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
 void Engine::Initialize(Frame* frame, TrackingResult* result) {
   const Stopwatch stopwatch;
   result->state = TrackingState::kInitializing;
-  RandomEngine random(options_.seed, frame->timestamp_ns);
-  const std::optional<InitialMap> initial = initializer_.Try(*frame, random);
-  result->reason = initializer_.reason();
-  if (initial) {
-    BuiltMap built = map_builder_.Build(atlas_.next_map_id(),
-                                        RigidTransform::FromMatrix(options_.map_from_first_camera), *initial, *frame);
-    result->reason = built.reason;
-    if (built.map != nullptr) {
-      atlas_.Add(std::move(built.map)).set_metric_scale(built.metric_scale);
-      *frame = std::move(built.current);
-      last_keyframe_index_ = frame_index_;
-      result->keyframe_inserted = true;
-      FillWaitingFrames(initial->reference, *frame);
-      std::optional<RigidTransform> previous;
-      if (!late_frames_.empty() && !waiting_.empty() &&
-          late_frames_.back().timestamp_ns == waiting_.back().timestamp_ns) {
-        const LateFramePose& late = late_frames_.back();
-        previous = map()->CameraFromMap(late.camera_from_reference, late.reference_keyframe_id);
-      }
-      waiting_.clear();
-      tracker_.Start(*map(), *frame, previous);
-      result->state = TrackingState::kTracking;
-      PoseEstimate estimate = FramePoseSolver(camera_).Solve(*map(), frame);
-      result->tracked_landmarks = estimate.inliers;
-      ReportPose(*frame, estimate.information, result);
-    }
+  if (single_frame_builder_.CanBuild(*frame)) {
+    StartFromOneFrame(frame);
+  } else {
+    StartFromTwoFrames(frame, result);
   }
   if (map() == nullptr) {
     waiting_.push_back(*frame);
     if (waiting_.size() > kMostWaitingFrames) waiting_.pop_front();
+  } else {
+    waiting_.clear();
+    last_keyframe_index_ = frame_index_;
+    result->keyframe_inserted = true;
+    result->state = TrackingState::kTracking;
+    const PoseEstimate estimate = FramePoseSolver(camera_).Solve(*map(), frame);
+    result->tracked_landmarks = estimate.inliers;
+    ReportPose(*frame, estimate.information, result);
   }
   result->stage_ms.match_ms = stopwatch.ElapsedMs();
+}
+
+void Engine::StartFromOneFrame(Frame* frame) {
+  const RigidTransform start = RigidTransform::FromMatrix(options_.map_from_first_camera);
+  atlas_.Add(single_frame_builder_.Build(atlas_.next_map_id(), start, frame));
+  tracker_.Start(*map(), *frame, std::nullopt);
+}
+
+void Engine::StartFromTwoFrames(Frame* frame, TrackingResult* result) {
+  RandomEngine random(options_.seed, frame->timestamp_ns);
+  const std::optional<InitialMap> initial = initializer_.Try(*frame, random);
+  result->reason = initializer_.reason();
+  if (!initial) return;
+  const RigidTransform start = RigidTransform::FromMatrix(options_.map_from_first_camera);
+  BuiltMap built = map_builder_.Build(atlas_.next_map_id(), start, *initial, *frame);
+  result->reason = built.reason;
+  if (built.map == nullptr) return;
+  atlas_.Add(std::move(built.map)).set_metric_scale(built.metric_scale);
+  *frame = std::move(built.current);
+  FillWaitingFrames(initial->reference, *frame);
+  std::optional<RigidTransform> previous;
+  if (!late_frames_.empty() && !waiting_.empty() && late_frames_.back().timestamp_ns == waiting_.back().timestamp_ns) {
+    const LateFramePose& late = late_frames_.back();
+    previous = map()->CameraFromMap(late.camera_from_reference, late.reference_keyframe_id);
+  }
+  tracker_.Start(*map(), *frame, previous);
+}
+
+void Engine::MakeMetricIfFound() {
+  if (map()->metric_scale() || !late_scale_.IsFound()) return;
+  mapper_.Settle(map());
+  loop_closer_.Settle(&atlas_);
+  tracker_.ChangeUnits(late_scale_.Apply(map()));
 }
 
 void Engine::FillWaitingFrames(const Frame& first, const Frame& current) {
@@ -216,6 +238,7 @@ void Engine::Track(Frame* frame, TrackingResult* result) {
     const RigidTransform camera_from_map = frame->camera_from_map;
     frame->reference_keyframe_id = mapper_.Insert(map(), *frame, frame_index_, &result->moving_unplaced);
     frame->camera_from_map = camera_from_map;
+    if (!map()->metric_scale()) late_scale_.Look(*map(), frame->reference_keyframe_id);
     last_keyframe_index_ = frame_index_;
     new_keyframe_ = frame->reference_keyframe_id;
     result->keyframe_inserted = true;
@@ -249,10 +272,19 @@ bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
   quality.frames_since_keyframe = static_cast<int>(frame_index_ - last_keyframe_index_);
   quality.mapper_is_free = mapper_.IsFree();
   quality.tracked = tracked;
-  // In a map of two keyframes no landmark has three observations yet.
-  const int min_observations = map()->live_keyframe_count() <= 2 ? 2 : 3;
-  quality.reference_tracked = map()->CountTracked(frame.reference_keyframe_id, min_observations);
+  // In a map of two keyframes no landmark has three views yet.
+  const int min_views = map()->live_keyframe_count() <= 2 ? 2 : 3;
+  quality.reference_tracked = map()->CountTracked(frame.reference_keyframe_id, min_views);
+  if (map()->metric_scale()) CountClose(frame, &quality);
   return keyframe_policy_.NeedsKeyframe(quality);
+}
+
+void Engine::CountClose(const Frame& frame, TrackingQuality* quality) const {
+  for (int i = 0; i < frame.size(); ++i) {
+    const bool tracked = frame.labels[i].role == FeatureRole::kTracked;
+    if (!tracked || !IsClose(camera_, frame.features->keypoints[i])) continue;
+    ++(frame.landmark_ids[i] == kNoId ? quality->close_new : quality->close_tracked);
+  }
 }
 
 void Engine::ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const {

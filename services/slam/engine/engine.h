@@ -12,12 +12,14 @@
 #include "map/atlas.h"
 #include "map/place_index.h"
 #include "map_update.h"
+#include "mapping/late_metric_scale.h"
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
 #include "tracking/camera_tracker.h"
 #include "tracking/initial_map_builder.h"
 #include "tracking/keyframe_policy.h"
 #include "tracking/map_initializer.h"
+#include "tracking/single_frame_map_builder.h"
 #include "tracking_result.h"
 
 namespace kinemap {
@@ -62,6 +64,9 @@ class Engine {
   void FinishMapping();
   Frame MakeFrame(const FrameObjects& objects);
   void Initialize(Frame* frame, TrackingResult* result);
+  void StartFromOneFrame(Frame* frame);
+  void StartFromTwoFrames(Frame* frame, TrackingResult* result);
+  void MakeMetricIfFound();
   void FillWaitingFrames(const Frame& first, const Frame& current);
   void Track(Frame* frame, TrackingResult* result);
   SlamMap* map() { return atlas_.active(); }
@@ -69,6 +74,7 @@ class Engine {
   void MergeLoops(TrackingResult* result);
   void LookForLoops(KeyframeId mapped, TrackingResult* result);
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
+  void CountClose(const Frame& frame, TrackingQuality* quality) const;
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
   bool has_right_camera_;
@@ -78,10 +84,12 @@ class Engine {
   RigExtractor extractor_;
   MapInitializer initializer_;
   InitialMapBuilder map_builder_;
+  SingleFrameMapBuilder single_frame_builder_;
   CameraTracker tracker_;
   KeyframePolicy keyframe_policy_;
   Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
+  LateMetricScale late_scale_;
   ObjectStates object_states_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;

@@ -222,12 +222,21 @@ class TestWhatItRefuses:
         with pytest.raises(InputError, match=message):
             SlamEngine(calibration(room), settings)
 
+    def test_a_right_image_of_a_single_camera(self, room: TexturedRoom) -> None:
+        pixels = room.render(0)[0]
+        with pytest.raises(InputError, match="right: expected no image of a camera without a stereo baseline"):
+            SlamEngine(calibration(room)).begin_frame(Image(1, pixels), Image(1, pixels))
+
+    def test_a_depth_image_of_another_size(self, room: TexturedRoom) -> None:
+        depth = DepthImage(1, np.ones((8, 9), np.float32))
+        with pytest.raises(InputError, match=f"depth_m: expected {room.width}x{room.height} pixels, got 9x8"):
+            SlamEngine(calibration(room)).begin_frame(Image(1, room.render(0)[0]), depth=depth)
+
+    def test_a_lens_that_cannot_be_undone(self, room: TexturedRoom) -> None:
+        folded = replace(calibration(room), distortion=(-3.0, 0.0, 0.0, 0.0, 0.0))
+        with pytest.raises(InputError, match=r"distortion that can be undone everywhere .* at pixel \(0, 0\)"):
+            SlamEngine(folded)
+
     def test_a_camera_without_a_focal_length(self) -> None:
         with pytest.raises(InputError, match="focal length fx, got 0"):
             SlamEngine(CameraCalibration(0, 640, 480, np.diag([0.0, 500.0, 1.0])))
-
-
-def test_a_lens_the_engine_does_not_know_is_refused(room: TexturedRoom) -> None:
-    fisheye = replace(calibration(room), distortion=(0.1, 0.0, 0.0, 0.0), distortion_model="kannala_brandt")
-    with pytest.raises(InputError, match="lens kannala_brandt: expected plumb_bob"):
-        SlamEngine(fisheye)

@@ -77,13 +77,15 @@ void BindOptions(py::module_& module) {
       .value("base", Stage::kBase)
       .value("dynamic", Stage::kDynamic)
       .value("moving", Stage::kMoving);
+  py::enum_<Lens>(module, "Lens").value("plumb_bob", Lens::kPlumbBob).value("kannala_brandt", Lens::kKannalaBrandt);
   py::class_<CameraModel>(module, "CameraModel")
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy,
-                       const std::vector<double>& distortion, double baseline_m) {
-             return CameraModel(width, height, fx, fy, cx, cy, distortion).WithBaseline(baseline_m);
+                       const std::vector<double>& distortion, double baseline_m, Lens lens) {
+             return CameraModel(width, height, fx, fy, cx, cy, distortion, lens).WithBaseline(baseline_m);
            }),
            py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
-           py::arg("distortion") = std::vector<double>{}, py::arg("baseline_m") = 0.0)
+           py::arg("distortion") = std::vector<double>{}, py::arg("baseline_m") = 0.0,
+           py::arg("lens") = Lens::kPlumbBob)
       .def_property_readonly("width", &CameraModel::width_px)
       .def_property_readonly("height", &CameraModel::height_px);
   py::class_<EngineOptions>(module, "EngineOptions")

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "features/pyramid_scales.h"
+
 namespace kinemap {
 
 struct Keypoint {
@@ -14,8 +16,13 @@ struct Keypoint {
   /// Column of the same point in the undistorted right image, or where it would be at the depth measured by a depth
   /// camera; not a number: unknown.
   double right_x_px = std::numeric_limits<double>::quiet_NaN();
+  double spread = 1;   ///< what a pixel of the raw image is in the undistorted one here
   double depth_m = 0;  ///< along the optical axis, by stereo or the depth image; 0: unknown
 
+  /// 1 / px^2 in the undistorted image.
+  double InverseVariance(const PyramidScales& scales) const {
+    return scales.inverse_variance(octave) / (spread * spread);
+  }
   bool HasDepth() const { return depth_m > 0; }
 };
 

@@ -50,7 +50,9 @@ void OrbExtractor::ExtractLevel(int octave, const CameraModel& camera) {
     // Resizing maps pixel centres by (x + 0.5) s - 0.5.
     keypoint.raw_px = {(corner.column + corner.ColumnOffset() + 0.5) * scale_x - 0.5,
                        (corner.row + corner.RowOffset() + 0.5) * scale_y - 0.5};
+    if (!camera.CanUndistort(keypoint.raw_px)) continue;
     keypoint.pixel_px = camera.Undistort(keypoint.raw_px);
+    keypoint.spread = camera.SpreadAt(keypoint.pixel_px);
     keypoint.angle_deg = orientation_.AngleDeg(level.image, corner.column, corner.row);
     keypoint.octave = octave;
     level.keypoints.push_back(keypoint);

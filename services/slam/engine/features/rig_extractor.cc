@@ -7,6 +7,7 @@ RigExtractor::RigExtractor(const OrbOptions& options, const PyramidScales& scale
     : camera_(camera),
       extractor_(options, scales),
       right_extractor_(options, scales),
+      team_(options.threads),
       stereo_matcher_(camera, scales),
       depth_reader_(camera) {}
 
@@ -21,7 +22,7 @@ FrameFeaturesPtr RigExtractor::Extract(const cv::Mat& image, const cv::Mat& righ
   const std::shared_ptr<FrameFeatures> beside = right_extractor_.Extract(right, camera_, &right_view.pyramid);
   left_view.features = features.get();
   right_view.features = beside.get();
-  stereo_matcher_.Match(left_view, right_view);
+  stereo_matcher_.Match(left_view, right_view, &team_);
   if (!depth_m.empty()) depth_reader_.Read(depth_m, features.get());
   return features;
 }

@@ -23,6 +23,7 @@ class RigExtractor {
  private:
   CameraModel camera_;
   OrbExtractor extractor_, right_extractor_;  // each keeps its image's pyramid
+  ThreadTeam team_;
   StereoMatcher stereo_matcher_;
   DepthReader depth_reader_;
 };

@@ -13,27 +13,30 @@ constexpr int kMostBits = 75;          // between a match by row and one without
 constexpr int kPatchRadiusPx = 5;
 constexpr int kPatchSide = 2 * kPatchRadiusPx + 1;
 constexpr int kSlidePx = 5;
+constexpr int kKeypointsOfTask = 100;
 constexpr double kOutlierFactor = 2.1;     // of the median difference of the patches
 constexpr double kLeastDisparityPx = 0.1;  // a point farther than this says is as good as infinitely far
 
-using Patch = std::array<int, kPatchSide * kPatchSide>;
+/// Rounded up to whole vectors of the processor; the rest is zero.
+constexpr int kPatchRoom = 128;
+using Patch = std::array<int16_t, kPatchRoom>;
 
 /// Grey levels around a pixel less their mean, so that the exposure of the two cameras may differ.
 Patch PatchAt(const cv::Mat& image, int column, int row) {
-  Patch patch;
+  Patch patch{};
   int sum = 0, next = 0;
   for (int y = -kPatchRadiusPx; y <= kPatchRadiusPx; ++y) {
     const uint8_t* line = image.ptr<uint8_t>(row + y) + column - kPatchRadiusPx;
     for (int x = 0; x < kPatchSide; ++x) sum += patch[next++] = line[x];
   }
-  const int mean = sum / static_cast<int>(patch.size());
-  for (int& value : patch) value -= mean;
+  const auto mean = static_cast<int16_t>(sum / next);
+  for (int i = 0; i < next; ++i) patch[i] -= mean;
   return patch;
 }
 
 int Difference(const Patch& a, const Patch& b) {
   int sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+  for (int i = 0; i < kPatchRoom; ++i) sum += std::abs(a[i] - b[i]);
   return sum;
 }
 
@@ -61,7 +64,7 @@ StereoMatcher::Rows StereoMatcher::RowsOf(const FrameFeatures& right) const {
   const int count = static_cast<int>(std::ceil(camera_.high_corner_px().y() - rows.low_px)) + 1;
   const auto visit = [&](auto&& add) {
     for (int i = 0; i < right.size(); ++i) {
-      const double tolerance = kRowTolerancePx * scales_.scale(right.keypoints[i].octave);
+      const double tolerance = kRowTolerancePx * scales_.scale(right.keypoints[i].octave) * right.keypoints[i].spread;
       const double row = right.keypoints[i].pixel_px.y() - rows.low_px;
       const int first = std::max(0, static_cast<int>(std::ceil(row - tolerance)));
       const int last = std::min(count - 1, static_cast<int>(std::floor(row + tolerance)));
@@ -141,13 +144,20 @@ bool StereoMatcher::Refine(const StereoView& left, const StereoView& right, int 
   return disparity > kLeastDisparityPx && disparity < camera_.fx_px();
 }
 
-int StereoMatcher::Match(const StereoView& left, const StereoView& right) const {
+int StereoMatcher::Match(const StereoView& left, const StereoView& right, ThreadTeam* team) const {
   const Rows rows = RowsOf(*right.features);
+  // Every keypoint by itself, so that the result is the same with any number of threads.
+  std::vector<Refined> refined_of(left.features->size());
+  team->Run((left.features->size() + kKeypointsOfTask - 1) / kKeypointsOfTask, [&](int task) {
+    const int end = std::min((task + 1) * kKeypointsOfTask, left.features->size());
+    for (int i = task * kKeypointsOfTask; i < end; ++i) {
+      const int match = FindCandidate(*left.features, i, *right.features, rows);
+      if (match < 0 || !Refine(left, right, i, match, &refined_of[i])) refined_of[i].keypoint = -1;
+    }
+  });
   std::vector<Refined> found;
-  for (int i = 0; i < left.features->size(); ++i) {
-    const int match = FindCandidate(*left.features, i, *right.features, rows);
-    Refined refined;
-    if (match >= 0 && Refine(left, right, i, match, &refined)) found.push_back(refined);
+  for (const Refined& refined : refined_of) {
+    if (refined.keypoint >= 0) found.push_back(refined);
   }
   if (found.empty()) return 0;
   std::vector<int> differences;

@@ -6,6 +6,7 @@
 
 #include "features/frame_features.h"
 #include "features/pyramid_scales.h"
+#include "features/thread_team.h"
 #include "geometry/camera_model.h"
 
 namespace kinemap {
@@ -25,7 +26,7 @@ class StereoMatcher {
   StereoMatcher(const CameraModel& camera, const PyramidScales& scales);
 
   /// Fills right_x_px and depth_m of the left keypoints that were found. Returns how many.
-  int Match(const StereoView& left, const StereoView& right) const;
+  int Match(const StereoView& left, const StereoView& right, ThreadTeam* team) const;
 
  private:
   struct Rows;

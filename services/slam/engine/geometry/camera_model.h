@@ -6,15 +6,22 @@
 
 namespace kinemap {
 
-/// A pinhole camera with the distortion of Brown and Conrady (k1, k2, p1, p2, k3; OpenCV's order), alone or as the left
-/// one of a rectified pair with equal lenses.
+/// How a lens bends what a pinhole would show; coefficients in OpenCV's order.
+enum class Lens {
+  kPlumbBob,       ///< Brown and Conrady: k1, k2, p1, p2, k3 of the distance from the axis at depth 1
+  kKannalaBrandt,  ///< Kannala and Brandt 2006: k1, k2, k3, k4 of the angle from the axis (fisheye)
+};
+
+/// A pinhole camera behind a lens, alone or as the left one of a rectified pair with equal lenses. Everything but
+/// Undistort and Distort knows the undistorted image only.
 /// Camera frame: x right, y down, z forward. Pixels have their centre at integer coordinates.
 class CameraModel {
  public:
-  /// `distortion` holds 0, 4 or 5 coefficients. Throws std::invalid_argument when a size or a focal length is not
-  /// positive, a value is not finite or the number of coefficients is another.
+  /// `distortion` holds 0, 4 or (plumb bob only) 5 coefficients. Throws std::invalid_argument when a size or a focal
+  /// length is not positive, a value is not finite, the number of coefficients is another or the distortion cannot be
+  /// undone.
   CameraModel(int width_px, int height_px, double fx_px, double fy_px, double cx_px, double cy_px,
-              const std::vector<double>& distortion = {});
+              const std::vector<double>& distortion = {}, Lens lens = Lens::kPlumbBob);
 
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
@@ -25,8 +32,11 @@ class CameraModel {
   /// How far the right camera stands along this one's x axis; 0: there is none. A depth camera counts as a pair whose
   /// right image nobody sees.
   double baseline_m() const { return baseline_m_; }
+  bool right_is_virtual() const { return right_is_virtual_; }
   /// The same camera with another baseline. Throws std::invalid_argument when it is negative or not finite.
   CameraModel WithBaseline(double baseline_m) const;
+  /// The same with a depth camera instead of a right one, which is as good as a pair with this baseline.
+  CameraModel WithDepthBaseline(double baseline_m) const;
   bool is_distorted() const { return is_distorted_; }
 
   /// The 3x3 calibration matrix of the undistorted camera.
@@ -44,6 +54,12 @@ class CameraModel {
     return fx_px_ * (point_in_camera.x() - baseline_m_) / point_in_camera.z() + cx_px_;
   }
 
+  /// Derivative of RightX by the point.
+  Eigen::RowVector3d RightXJacobian(const Eigen::Vector3d& point_in_camera) const {
+    const double inverse_depth = 1.0 / point_in_camera.z();
+    return {fx_px_ * inverse_depth, 0, -fx_px_ * (point_in_camera.x() - baseline_m_) * inverse_depth * inverse_depth};
+  }
+
   /// Column in the right image of what has this undistorted column in the left one, at a depth.
   double RightXAtDepth(double left_x_px, double depth_m) const { return left_x_px - fx_px_ * baseline_m_ / depth_m; }
 
@@ -58,11 +74,18 @@ class CameraModel {
     return {(pixel_px.x() - cx_px_) / fx_px_, (pixel_px.y() - cy_px_) / fy_px_, 1.0};
   }
 
-  /// Raw pixel -> pixel of the undistorted camera, by fixed-point iteration.
+  /// Whether a raw pixel lies within 80 degrees of a fisheye's axis; beyond, the undistorted image is no longer of use.
+  bool CanUndistort(const Eigen::Vector2d& raw_px) const;
+
+  /// Raw pixel -> pixel of the undistorted camera, by iteration.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& raw_px) const;
 
   /// Undistorted pixel -> raw pixel.
   Eigen::Vector2d Distort(const Eigen::Vector2d& pixel_px) const;
+
+  /// How many pixels of the undistorted image here are one of the raw image, in the mean of all directions: a
+  /// keypoint's error grows by as much. Only a fisheye differs from 1 enough to count.
+  double SpreadAt(const Eigen::Vector2d& pixel_px) const;
 
   /// Smallest box that holds the undistorted image: low and high corner.
   const Eigen::Vector2d& low_corner_px() const { return low_corner_px_; }
@@ -74,11 +97,17 @@ class CameraModel {
 
  private:
   Eigen::Vector2d DistortNormalized(const Eigen::Vector2d& normalized) const;
+  Eigen::Vector2d UndistortNormalized(const Eigen::Vector2d& distorted) const;
+  double FisheyeRadius(double angle_rad) const;
+  double FisheyeSlope(double angle_rad) const;
+  void FindCorners();
 
   int width_px_, height_px_;
   double fx_px_, fy_px_, cx_px_, cy_px_;
   double baseline_m_ = 0;
-  double k1_ = 0, k2_ = 0, p1_ = 0, p2_ = 0, k3_ = 0;
+  bool right_is_virtual_ = false;
+  Lens lens_;
+  double k1_ = 0, k2_ = 0, p1_ = 0, p2_ = 0, k3_ = 0, k4_ = 0;
   bool is_distorted_ = false;
   Eigen::Vector2d low_corner_px_, high_corner_px_;
 };

@@ -117,12 +117,21 @@ void SlamMap::UpdateCovisibility(KeyframeId id) {
   covisibility_.SetEdges(id, shared);
 }
 
-int SlamMap::CountTracked(KeyframeId id, int min_observations) const {
+int SlamMap::CountViews(const Landmark& landmark) const {
+  int views = static_cast<int>(landmark.observations.size());
+  if (!metric_scale_) return views;
+  for (const auto& [keyframe_id, keypoint] : landmark.observations) {
+    views += keyframe(keyframe_id).features->keypoints[keypoint].HasDepth() ? 1 : 0;
+  }
+  return views;
+}
+
+int SlamMap::CountTracked(KeyframeId id, int min_views) const {
   int count = 0;
   for (const LandmarkId landmark_id : keyframe(id).landmark_ids) {
     const Landmark* landmark = FindLandmark(landmark_id);
     if (landmark == nullptr || !landmark->IsTrackable()) continue;
-    if (static_cast<int>(landmark->observations.size()) >= min_observations) ++count;
+    if (CountViews(*landmark) >= min_views) ++count;
   }
   return count;
 }

@@ -101,8 +101,10 @@ class SlamMap {
   void UpdateLabel(Landmark* landmark);
   void MarkChanged(const Landmark& landmark) { changed_landmarks_.insert(landmark.id); }
 
-  /// Trackable landmarks of a keyframe that at least `min_observations` keyframes see.
-  int CountTracked(KeyframeId id, int min_observations) const;
+  /// Images in which keyframes see a landmark; a measured depth counts as a second one where the map is metric.
+  int CountViews(const Landmark& landmark) const;
+  /// Trackable landmarks of a keyframe that are seen in at least `min_views` images.
+  int CountTracked(KeyframeId id, int min_views) const;
   /// Median depth of a keyframe's trackable landmarks along its optical axis; 0 when it has none.
   double MedianDepth(KeyframeId id) const;
 

@@ -4,7 +4,7 @@
 namespace kinemap {
 namespace {
 constexpr double kLeastFoundRatio = 0.25;
-constexpr size_t kLeastObservations = 3;
+constexpr int kLeastViews = 3;
 constexpr int kKeyframesToGather = 2;
 constexpr int kTrialKeyframes = 3;
 }  // namespace
@@ -21,7 +21,7 @@ void LandmarkCuller::Cull(SlamMap* map, KeyframeId newest) {
     const int64_t age = newest - landmark->first_keyframe_id;
     // What stays out of tracking is never looked for in a frame, so only its observations judge it.
     const bool rarely_found = landmark->IsTrackable() && landmark->found < kLeastFoundRatio * landmark->visible;
-    const bool rarely_seen = age >= kKeyframesToGather && landmark->observations.size() < kLeastObservations;
+    const bool rarely_seen = age >= kKeyframesToGather && map->CountViews(*landmark) < kLeastViews;
     if (rarely_found || rarely_seen) {
       map->RemoveLandmark(id);
     } else if (age < kTrialKeyframes) {

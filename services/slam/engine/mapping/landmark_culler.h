@@ -8,7 +8,7 @@
 namespace kinemap {
 
 /// Puts every new landmark on trial for its first keyframes: it must be found in a quarter of the frames that should
-/// see it and be observed from three keyframes (Mur-Artal, Montiel and Tardos 2015, section VI-B).
+/// see it and be observed in three images (Mur-Artal, Montiel and Tardos 2015, section VI-B).
 class LandmarkCuller {
  public:
   void Add(const std::vector<LandmarkId>& landmarks);

@@ -4,11 +4,11 @@
 #include <set>
 
 #include "map/landmark_search.h"
+#include "map/reprojection_check.h"
 
 namespace kinemap {
 namespace {
 constexpr double kRadiusPx = 3.0;
-constexpr double kReprojectionBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
 }  // namespace
 
 std::vector<KeyframeId> LandmarkFuser::Targets(const SlamMap& map, KeyframeId keyframe_id) const {
@@ -33,13 +33,13 @@ void LandmarkFuser::FuseInto(SlamMap* map, KeyframeId target_id, const std::vect
     const auto view = PredictView(*landmark, map->PositionInMap(*landmark), target_from_map,
                                   target.map_from_keyframe.translation, camera_, scales);
     if (!view) continue;
-    const SearchWindow window{view->pixel_px, kRadiusPx * scales.scale(view->octave), view->octave - 1, view->octave};
+    const Eigen::Vector3d in_target = target_from_map * map->PositionInMap(*landmark);
+    const double radius = kRadiusPx * scales.scale(view->octave) * camera_.SpreadAt(view->pixel_px);
+    const SearchWindow window{view->pixel_px, radius, view->octave - 1, view->octave};
     const int best =
         search.FindBest(*target.features, landmark->descriptor, window, kStrictHammingDistance, 1.0, [&](int j) {
-          const Keypoint& keypoint = target.features->keypoints[j];
           return landmark->IsCompatibleWith(target.labels[j]) &&
-                 (keypoint.pixel_px - view->pixel_px).squaredNorm() * scales.inverse_variance(keypoint.octave) <
-                     kReprojectionBound;
+                 Reprojects(*map, camera_, in_target, target.features->keypoints[j]);
         });
     if (best < 0) continue;
     Landmark* other = map->FindLandmark(target.landmark_ids[best]);

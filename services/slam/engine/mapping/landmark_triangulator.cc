@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "geometry/triangulation.h"
+#include "map/reprojection_check.h"
 
 namespace kinemap {
 namespace {
 
-constexpr double kEpipolarBound = 3.841;      // 95 % of chi-squared, one degree of freedom
-constexpr double kReprojectionBound = 5.991;  // two degrees of freedom
-constexpr double kEpipoleBound = 100;         // squared pixels: near the epipole a line tells nothing
-constexpr double kMarginPx = 10;              // beyond both ends and, at the coarsest octave, beside the line
-constexpr double kScaleTolerance = 1.5;       // times one octave's factor
+constexpr double kEpipolarBound = 3.841;  // 95 % of chi-squared, one degree of freedom
+constexpr double kEpipoleBound = 100;     // squared pixels: near the epipole a line tells nothing
+constexpr double kMarginPx = 10;          // beyond both ends and, at the coarsest octave, beside the line
+constexpr double kScaleTolerance = 1.5;   // times one octave's factor
 
 bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
   if (a.role != b.role) return false;
@@ -70,18 +70,19 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
   Eigen::Vector3d line = pair.fundamental * point.pixel_px.homogeneous();
   line /= line.head<2>().norm();
   int best = -1, best_distance = kStrictHammingDistance;
-  pair.second.features->grid.VisitAlong(far_px, near_px, kMarginPx, [&](const KeypointGrid::Entry& entry) {
-    const double scale = pair.scales.scale(entry.octave);
-    const double off_line = line.x() * entry.x_px + line.y() * entry.y_px + line.z();
-    if (off_line * off_line >= kEpipolarBound * scale * scale || taken[entry.index]) return;
-    if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
-    const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
-    if (distance >= best_distance) return;
-    const Eigen::Vector2d& pixel = pair.second.features->keypoints[entry.index].pixel_px;
-    if (pair.has_epipole && (pixel - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
-    best = entry.index;
-    best_distance = distance;
-  });
+  pair.second.features->grid.VisitAlong(
+      far_px, near_px, kMarginPx * point.spread, [&](const KeypointGrid::Entry& entry) {
+        const Keypoint& candidate = pair.second.features->keypoints[entry.index];
+        const double scale = pair.scales.scale(entry.octave) * candidate.spread;
+        const double off_line = line.x() * entry.x_px + line.y() * entry.y_px + line.z();
+        if (off_line * off_line >= kEpipolarBound * scale * scale || taken[entry.index]) return;
+        if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
+        const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
+        if (distance >= best_distance) return;
+        if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
+        best = entry.index;
+        best_distance = distance;
+      });
   return best;
 }
 
@@ -97,11 +98,7 @@ bool LandmarkTriangulator::PointOfMatch(const SlamMap& map, const Pair& pair, in
   if (!point.allFinite() || point.z() <= 0) return false;
   const Eigen::Vector3d in_second = pair.second_from_first * point;
   if (in_second.z() <= 0) return false;
-  const auto error = [&](const Eigen::Vector3d& in_camera, const Keypoint& keypoint_of) {
-    return (camera_.Project(in_camera) - keypoint_of.pixel_px).squaredNorm() *
-           scales.inverse_variance(keypoint_of.octave);
-  };
-  if (error(point, a) > kReprojectionBound || error(in_second, b) > kReprojectionBound) return false;
+  if (!Reprojects(map, camera_, point, a) || !Reprojects(map, camera_, in_second, b)) return false;
   // The ratio of the distances must be that of the octaves.
   const double distance_ratio = in_second.norm() / point.norm();
   const double octave_ratio = scales.scale(a.octave) / scales.scale(b.octave);

@@ -9,6 +9,7 @@ namespace kinemap {
 LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& camera)
     : options_(options),
       camera_(camera),
+      measured_maker_(camera),
       triangulator_(options.triangulator, camera),
       fuser_(options.fuser, camera),
       bundle_adjuster_(options.bundle),
@@ -26,6 +27,7 @@ KeyframeId LocalMapper::Insert(SlamMap* map, const Frame& frame, int64_t frame_i
 
 void LocalMapper::MapAround(SlamMap* map, KeyframeId keyframe_id, int64_t due_frame) {
   landmark_culler_.Cull(map, keyframe_id);
+  landmark_culler_.Add(measured_maker_.Make(map, keyframe_id));
   landmark_culler_.Add(triangulator_.Triangulate(map, keyframe_id));
   fuser_.Fuse(map, keyframe_id);
   slot_.Start(bundle_adjuster_.CopyProblem(*map, keyframe_id), due_frame);

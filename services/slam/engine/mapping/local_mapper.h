@@ -9,6 +9,7 @@
 #include "mapping/landmark_fuser.h"
 #include "mapping/landmark_triangulator.h"
 #include "mapping/local_bundle_adjuster.h"
+#include "mapping/measured_landmark_maker.h"
 #include "mapping/merge_slot.h"
 #include "mapping/moving_landmark_placer.h"
 
@@ -72,6 +73,7 @@ class LocalMapper {
 
   LocalMapperOptions options_;
   CameraModel camera_;
+  MeasuredLandmarkMaker measured_maker_;
   LandmarkTriangulator triangulator_;
   LandmarkFuser fuser_;
   LandmarkCuller landmark_culler_;

@@ -11,11 +11,13 @@
 #include <memory>
 
 #include "optimization/reprojection_cost.h"
+#include "optimization/stereo_reprojection_cost.h"
 
 namespace kinemap {
 namespace {
 
-constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
+constexpr double kOutlierBound = 5.991;        // 95 % of chi-squared, two degrees of freedom
+constexpr double kStereoOutlierBound = 7.815;  // three
 
 // A dense reduced system grows with the cube of the cameras; that of a whole map is mostly empty.
 constexpr int kMostDenseCameras = 60;
@@ -40,7 +42,7 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
   for (size_t i = 0; i < poses.size(); ++i) WritePose(bundle->cameras[i].camera_from_map, poses[i].data());
 
   PoseManifold manifold;
-  ceres::HuberLoss huber(std::sqrt(kOutlierBound));
+  ceres::HuberLoss huber(std::sqrt(kOutlierBound)), stereo_huber(std::sqrt(kStereoOutlierBound));
   ceres::Problem::Options problem_options;
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -49,13 +51,24 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   std::vector<bool> camera_used(poses.size(), false), point_used(bundle->points.size(), false);
   int free_cameras = 0;
+  bool has_right_image = false;
   for (const BundleObservation& observation : bundle->observations) {
     if (observation.outlier) continue;
     double* pose = poses[observation.camera].data();
     double* point = bundle->points[observation.point].position_in_map.data();
     const double inverse_sigma = std::sqrt(observation.inverse_variance);
-    ceres::LossFunction* loss = robust ? &huber : nullptr;
-    if (bundle_options.radial_sigma > 0) {
+    const bool stereo = !std::isnan(observation.right_x_px);
+    ceres::LossFunction* loss = !robust ? nullptr : stereo ? &stereo_huber : &huber;
+    if (stereo && bundle_options.radial_sigma > 0) {
+      problem.AddResidualBlock(
+          new RadialStereoReprojectionCost(camera, observation.pixel_px, observation.right_x_px, inverse_sigma), loss,
+          pose, point, &bundle->radial, &bundle->right_shift_px);
+      has_right_image = true;
+    } else if (stereo) {
+      problem.AddResidualBlock(
+          new StereoReprojectionCost(camera, observation.pixel_px, observation.right_x_px, inverse_sigma), loss, pose,
+          point);
+    } else if (bundle_options.radial_sigma > 0) {
       problem.AddResidualBlock(new RadialReprojectionCost(camera, observation.pixel_px, inverse_sigma), loss, pose,
                                point, &bundle->radial);
     } else {
@@ -78,8 +91,13 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
   }
   if (free_cameras == 0) return;
   if (bundle_options.radial_sigma > 0) {
-    problem.AddResidualBlock(new RadialPriorCost(bundle_options.radial_sigma), nullptr, &bundle->radial);
+    problem.AddResidualBlock(new ZeroPriorCost(bundle_options.radial_sigma), nullptr, &bundle->radial);
     ordering->AddElementToGroup(&bundle->radial, 1);
+  }
+  if (has_right_image) {
+    problem.AddResidualBlock(new ZeroPriorCost(bundle_options.right_shift_sigma_px), nullptr, &bundle->right_shift_px);
+    ordering->AddElementToGroup(&bundle->right_shift_px, 1);
+    if (camera.right_is_virtual()) problem.SetParameterBlockConstant(&bundle->right_shift_px);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = free_cameras > kMostDenseCameras ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
@@ -101,9 +119,13 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
   for (BundleObservation& observation : bundle->observations) {
     const Eigen::Vector3d point =
         bundle->cameras[observation.camera].camera_from_map * bundle->points[observation.point].position_in_map;
-    const double squared = (ProjectRadial(camera, bundle->radial, point) - observation.pixel_px).squaredNorm() *
-                           observation.inverse_variance;
-    observation.outlier = point.z() <= 0 || !(squared <= kOutlierBound);
+    const bool stereo = !std::isnan(observation.right_x_px);
+    double squared_px = (ProjectRadial(camera, bundle->radial, point) - observation.pixel_px).squaredNorm();
+    if (stereo)
+      squared_px +=
+          std::pow(RightXRadial(camera, bundle->radial, point) + bundle->right_shift_px - observation.right_x_px, 2);
+    const double bound = stereo ? kStereoOutlierBound : kOutlierBound;
+    observation.outlier = point.z() <= 0 || !(squared_px * observation.inverse_variance <= bound);
   }
 }
 

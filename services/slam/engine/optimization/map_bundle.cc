@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "map/reprojection_check.h"
+
 namespace kinemap {
 
 BundleProblem CopyBundleProblem(const SlamMap& map, const std::set<KeyframeId>& moving) {
@@ -30,8 +32,8 @@ BundleProblem CopyBundleProblem(const SlamMap& map, const std::set<KeyframeId>& 
     problem.points.push_back({id, map.PositionInMap(landmark)});
     for (const auto& [observer_id, keypoint_index] : landmark.observations) {
       const Keypoint& keypoint = map.keyframe(observer_id).features->keypoints[keypoint_index];
-      problem.observations.push_back(
-          {camera_index(observer_id), point, keypoint.pixel_px, map.scales().inverse_variance(keypoint.octave)});
+      problem.observations.push_back({camera_index(observer_id), point, keypoint.pixel_px,
+                                      keypoint.InverseVariance(map.scales()), RightXIn(map, keypoint)});
     }
   }
   return problem;

@@ -7,12 +7,22 @@
 namespace kinemap {
 namespace {
 
-constexpr double kOutlierBound = 5.991;  // 95 % of chi-squared, two degrees of freedom
+constexpr double kOutlierBound = 5.991;        // 95 % of chi-squared, two degrees of freedom
+constexpr double kStereoOutlierBound = 7.815;  // three
 constexpr int kRounds = 4;
 constexpr int kRobustRounds = 2;
 constexpr int kIterations = 10;
 constexpr int kLeastObservations = 3;
 constexpr double kBehindCamera = 1e9;
+
+double OutlierBound(const PoseObservation& observation) {
+  return std::isnan(observation.right_x_px) ? kOutlierBound : kStereoOutlierBound;
+}
+
+/// Error in the right image, in px; 0 where there is none.
+double RightError(const CameraModel& camera, const PoseObservation& observation, const Eigen::Vector3d& point) {
+  return std::isnan(observation.right_x_px) ? 0 : camera.RightX(point) - observation.right_x_px;
+}
 
 }  // namespace
 
@@ -27,7 +37,6 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
                                                         const std::vector<bool>& inlier, bool robust) const {
   NormalEquations equations;
   const Eigen::Matrix3d rotation = camera_from_map.rotation.toRotationMatrix();
-  const double huber = std::sqrt(kOutlierBound);
   for (size_t i = 0; i < observations.size(); ++i) {
     if (!inlier[i]) continue;
     const Eigen::Vector3d point = rotation * observations[i].point_in_map + camera_from_map.translation;
@@ -36,10 +45,12 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
       continue;
     }
     const Eigen::Vector2d error = camera_.Project(point) - observations[i].pixel_px;
-    const double squared = error.squaredNorm() * observations[i].inverse_variance;
+    const double right_error = RightError(camera_, observations[i], point);
+    const double squared = (error.squaredNorm() + right_error * right_error) * observations[i].inverse_variance;
+    const double bound = OutlierBound(observations[i]), huber = std::sqrt(bound);
     double weight = observations[i].inverse_variance;
-    if (robust && squared > kOutlierBound) {
-      equations.cost += 2 * huber * std::sqrt(squared) - kOutlierBound;
+    if (robust && squared > bound) {
+      equations.cost += 2 * huber * std::sqrt(squared) - bound;
       weight *= huber / std::sqrt(squared);
     } else {
       equations.cost += squared;
@@ -50,6 +61,12 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
     jacobian.rightCols<3>() = -projection * CrossMatrix(point);
     equations.hessian.noalias() += weight * jacobian.transpose() * jacobian;
     equations.gradient.noalias() += weight * jacobian.transpose() * error;
+    if (std::isnan(observations[i].right_x_px)) continue;
+    const Eigen::RowVector3d right_projection = camera_.RightXJacobian(point);
+    Vector6d right_jacobian;
+    right_jacobian << right_projection.transpose(), point.cross(right_projection.transpose());
+    equations.hessian.noalias() += weight * right_jacobian * right_jacobian.transpose();
+    equations.gradient.noalias() += weight * right_error * right_jacobian;
   }
   return equations;
 }
@@ -89,9 +106,11 @@ PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_m
     estimate.inliers = 0;
     for (size_t i = 0; i < observations.size(); ++i) {
       const Eigen::Vector3d point = estimate.camera_from_map * observations[i].point_in_map;
+      const double right_error = RightError(camera_, observations[i], point);
       const double squared =
-          (camera_.Project(point) - observations[i].pixel_px).squaredNorm() * observations[i].inverse_variance;
-      estimate.inlier[i] = point.z() > 0 && squared <= kOutlierBound;
+          ((camera_.Project(point) - observations[i].pixel_px).squaredNorm() + right_error * right_error) *
+          observations[i].inverse_variance;
+      estimate.inlier[i] = point.z() > 0 && squared <= OutlierBound(observations[i]);
       estimate.inliers += estimate.inlier[i] ? 1 : 0;
     }
     if (estimate.inliers < kLeastObservations) return estimate;

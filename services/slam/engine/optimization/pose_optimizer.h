@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "geometry/camera_model.h"
@@ -12,7 +13,8 @@ namespace kinemap {
 struct PoseObservation {
   Eigen::Vector3d point_in_map;
   Eigen::Vector2d pixel_px;
-  double inverse_variance;  ///< 1 / px^2
+  double inverse_variance;                                       ///< 1 / px^2
+  double right_x_px = std::numeric_limits<double>::quiet_NaN();  ///< column in the right image; not a number: none
 };
 
 struct PoseEstimate {
@@ -24,7 +26,8 @@ struct PoseEstimate {
 };
 
 /// Pose of one camera against fixed points: Levenberg-Marquardt on the reprojection error with Huber's loss; after
-/// each of four rounds observations beyond the 95 % bound of chi-squared are left out (and may come back), and the last
+/// each of four rounds observations beyond the 95 % bound of chi-squared (of two degrees of freedom, of three with
+/// a right image) are left out (and may come back), and the last
 /// two rounds are quadratic (Mur-Artal and Tardos 2015, section V).
 class PoseOptimizer {
  public:

@@ -1,42 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optimization/reprojection_cost.h"
 
-#include <algorithm>
+#include "optimization/residual_jacobians.h"
 
 namespace kinemap {
-namespace {
-// A point that a step put behind the camera is evaluated just in front of it, which keeps the cost finite and high.
-constexpr double kNearestDepth = 1e-6;
-
-struct PointInCamera {
-  PointInCamera(const double* pose, const double* point_in_map)
-      : rotation(Eigen::Map<const Eigen::Quaterniond>(pose).toRotationMatrix()),
-        point(rotation * Eigen::Map<const Eigen::Vector3d>(point_in_map) +
-              Eigen::Map<const Eigen::Vector3d>(pose + 4)) {
-    point.z() = std::max(point.z(), kNearestDepth);
-  }
-
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d point;
-};
-
-/// `projection`: derivative of the residual by the point in the camera frame.
-void WritePoseAndPointJacobians(const Eigen::Matrix<double, 2, 3>& projection, const PointInCamera& in_camera,
-                                double** jacobians) {
-  if (jacobians[0] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> by_pose(jacobians[0]);
-    by_pose.leftCols<3>() = projection;
-    by_pose.middleCols<3>(3) = -projection * CrossMatrix(in_camera.point);
-    by_pose.col(6).setZero();
-  }
-  if (jacobians[1] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>> by_point(jacobians[1]);
-    by_point = projection * in_camera.rotation;
-  }
-}
-
-}  // namespace
-
 void WritePose(const RigidTransform& transform, double* pose) {
   Eigen::Map<Eigen::Vector4d>(pose, 4) = transform.rotation.coeffs();
   Eigen::Map<Eigen::Vector3d>(pose + 4, 3) = transform.translation;
@@ -82,7 +49,7 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   residual = inverse_sigma_ * (camera_.Project(point) - pixel_px_);
   if (jacobians == nullptr) return true;
   const Eigen::Matrix<double, 2, 3> projection = inverse_sigma_ * camera_.ProjectionJacobian(point);
-  WritePoseAndPointJacobians(projection, in_camera, jacobians);
+  WritePoseAndPointJacobians<2>(projection, in_camera, jacobians);
   return true;
 }
 
@@ -93,24 +60,17 @@ bool RadialReprojectionCost::Evaluate(double const* const* parameters, double* r
   Eigen::Map<Eigen::Vector2d> residual(residuals);
   residual = inverse_sigma_ * (ProjectRadial(camera_, radial, point) - pixel_px_);
   if (jacobians == nullptr) return true;
-  const Eigen::Vector2d focal(camera_.fx_px(), camera_.fy_px());
-  const Eigen::Vector2d normalized = point.head<2>() / point.z();
-  const double r2 = normalized.squaredNorm();
-  const Eigen::Matrix2d by_normalized =
-      (1 + radial * r2) * Eigen::Matrix2d::Identity() + 2 * radial * normalized * normalized.transpose();
-  Eigen::Matrix<double, 2, 3> normalization;
-  normalization << 1, 0, -normalized.x(), 0, 1, -normalized.y();
-  const Eigen::Matrix<double, 2, 3> projection =
-      inverse_sigma_ / point.z() * focal.asDiagonal() * by_normalized * normalization;
-  WritePoseAndPointJacobians(projection, in_camera, jacobians);
+  const RadialProjection projected(camera_, radial, point);
+  const Eigen::Matrix<double, 2, 3> projection = inverse_sigma_ * projected.by_point;
+  WritePoseAndPointJacobians<2>(projection, in_camera, jacobians);
   if (jacobians[2] != nullptr) {
     Eigen::Map<Eigen::Vector2d> by_radial(jacobians[2]);
-    by_radial = inverse_sigma_ * r2 * focal.cwiseProduct(normalized);
+    by_radial = inverse_sigma_ * projected.by_radial;
   }
   return true;
 }
 
-bool RadialPriorCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+bool ZeroPriorCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   residuals[0] = parameters[0][0] / sigma_;
   if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1 / sigma_;
   return true;

@@ -56,10 +56,10 @@ class RadialReprojectionCost : public ceres::SizedCostFunction<2, kPoseSize, 3, 
   double inverse_sigma_;
 };
 
-/// Pulls the radial distortion towards zero: parameter over its standard deviation.
-class RadialPriorCost : public ceres::SizedCostFunction<1, 1> {
+/// Pulls what calibration left towards zero: parameter over its standard deviation.
+class ZeroPriorCost : public ceres::SizedCostFunction<1, 1> {
  public:
-  explicit RadialPriorCost(double sigma) : sigma_(sigma) {}
+  explicit ZeroPriorCost(double sigma) : sigma_(sigma) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 

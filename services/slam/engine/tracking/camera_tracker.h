@@ -47,6 +47,9 @@ class CameraTracker {
   /// The last frame became this keyframe: it moves with it and has its landmarks.
   void FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id);
 
+  /// The map's unit changed: what was one of its units is now `factor` of them.
+  void ChangeUnits(double factor) { motion_model_.ChangeUnits(factor); }
+
   int frames_since_relocalization() const { return frames_since_relocalization_; }
 
  private:

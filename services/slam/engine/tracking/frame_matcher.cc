@@ -22,7 +22,8 @@ int MatchLastFrame(const SlamMap& map, const CameraModel& camera, const Frame& l
     const Eigen::Vector2d pixel = camera.Project(in_camera);
     if (!camera.Contains(pixel)) continue;
     const int octave = last.features->keypoints[i].octave;
-    const SearchWindow window{pixel, radius_px * map.scales().scale(octave), octave - 1, octave + 1};
+    const double radius = radius_px * map.scales().scale(octave) * camera.SpreadAt(pixel);
+    const SearchWindow window{pixel, radius, octave - 1, octave + 1};
     const int best = search.FindBest(*current->features, landmark->descriptor, window, kMaxHammingDistance, 1.0,
                                      [&](int j) { return current->IsFree(j); });
     if (best < 0) continue;
@@ -66,8 +67,8 @@ int ProjectKeyframe(const SlamMap& map, const CameraModel& camera, KeyframeId ke
     const auto view =
         PredictView(*landmark, map.PositionInMap(*landmark), frame->camera_from_map, center, camera, map.scales());
     if (!view) continue;
-    const SearchWindow window{view->pixel_px, radius_px * map.scales().scale(view->octave), view->octave - 1,
-                              view->octave + 1};
+    const double radius = radius_px * map.scales().scale(view->octave) * camera.SpreadAt(view->pixel_px);
+    const SearchWindow window{view->pixel_px, radius, view->octave - 1, view->octave + 1};
     const int best = search.FindBest(*frame->features, landmark->descriptor, window, max_distance, 1.0,
                                      [&](int j) { return frame->IsFree(j); });
     if (best < 0) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/frame_pose_solver.h"
 
+#include "map/reprojection_check.h"
+
 namespace kinemap {
 
 PoseEstimate FramePoseSolver::Solve(const SlamMap& map, Frame* frame) const {
@@ -14,8 +16,8 @@ PoseEstimate FramePoseSolver::Solve(const SlamMap& map, Frame* frame) const {
       continue;
     }
     const Keypoint& keypoint = frame->features->keypoints[i];
-    observations.push_back(
-        {map.PositionInMap(*landmark), keypoint.pixel_px, map.scales().inverse_variance(keypoint.octave)});
+    observations.push_back({map.PositionInMap(*landmark), keypoint.pixel_px, keypoint.InverseVariance(map.scales()),
+                            RightXIn(map, keypoint)});
     keypoints.push_back(i);
   }
   PoseEstimate estimate = optimizer_.Optimize(frame->camera_from_map, observations);

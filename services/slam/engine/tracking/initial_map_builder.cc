@@ -43,7 +43,7 @@ void InitialMapBuilder::Adjust(SlamMap* map) const {
     for (const auto& [observer, index] : landmark.observations) {
       const Keypoint& keypoint = map->keyframe(observer).features->keypoints[index];
       problem.observations.push_back({static_cast<int>(observer - first), static_cast<int>(problem.points.size()),
-                                      keypoint.pixel_px, scales_.inverse_variance(keypoint.octave)});
+                                      keypoint.pixel_px, keypoint.InverseVariance(scales_)});
     }
     problem.points.push_back({id, map->PositionInMap(landmark)});
   }

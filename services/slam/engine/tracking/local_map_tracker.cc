@@ -66,7 +66,8 @@ void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<Keyfr
           PredictView(*landmark, map->PositionInMap(*landmark), frame->camera_from_map, center, camera_, map->scales());
       if (!view) continue;
       ++landmark->visible;
-      const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor;
+      const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor *
+                            camera_.SpreadAt(view->pixel_px);
       const SearchWindow window{view->pixel_px, radius * map->scales().scale(view->octave), view->octave - 1,
                                 view->octave};
       const int best = search.FindBest(*frame->features, landmark->descriptor, window, kMaxHammingDistance, kMatchRatio,

@@ -17,6 +17,10 @@ class MotionModel {
     if (velocity_) velocity_->translation *= factor;
   }
   void Reset() { velocity_.reset(); }
+  /// The map's unit changed: what was one of its units is now `factor` of them.
+  void ChangeUnits(double factor) {
+    if (velocity_) velocity_->translation *= factor;
+  }
   bool IsKnown() const { return velocity_.has_value(); }
   RigidTransform Predict(const RigidTransform& last) const { return *velocity_ * last; }
 

@@ -6,8 +6,7 @@ import numpy.typing as npt
 import pytest
 
 from schemas.records.camera import CameraCalibration, DepthImage, Image
-from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
-from services.slam.depth_scale import DepthScale
+from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame
 from services.slam.engine_adapter import EngineSettings, SlamEngine
 from tests.unit.slam.textured_room import TexturedRoom
 
@@ -62,38 +61,6 @@ def test_a_map_without_any_depth_stays_in_units(room: TexturedRoom) -> None:
     frames, updates = drive(room, blind_frames=25)
     assert not any(frame.metric_scale for frame in frames)
     assert all((update.keyframe_pose[:, 7] == 1.0).all() for update in updates)
-
-
-@pytest.mark.parametrize(("landmarks", "expected"), [(29, False), (30, True)])
-def test_a_few_landmarks_say_nothing(landmarks: int, expected: bool) -> None:
-    scale = DepthScale(CameraCalibration(0, 64, 48, np.array([[50.0, 0, 32], [0, 50, 24], [0, 0, 1]])), np.zeros(3))
-    pose = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    update = MapUpdate(
-        1,
-        keyframe_id=np.array([0]),
-        keyframe_timestamp_ns=np.array([1]),
-        keyframe_map_id=np.array([0]),
-        keyframe_pose=np.append(pose, 1.0)[None],
-        keyframe_culled=np.zeros(1, np.uint8),
-        keyframe_parent_id=np.array([-1]),
-        landmark_id=np.arange(landmarks),
-        landmark_anchor_id=np.zeros(landmarks, np.int64),
-        landmark_position=np.tile(np.array([0.0, 0.0, 2.0], np.float32), (landmarks, 1)),
-        landmark_state=np.zeros(landmarks, np.uint8),
-        landmark_last_seen_ns=np.ones(landmarks, np.int64),
-    )
-    state, ahead = TrackingState.TRACKING, np.array([4.0, 0, 0, 0, 0, 0, 1])
-    frame = TrackedFrame(2, state, "", 0, ahead, np.eye(6), 0, pose, 9, 9, False, MaskSource.NO_MASKS, False, "base")
-    scale.update(update)
-    scale.look(update, pose, DepthImage(1, np.full((48, 64), 6.0, np.float32)))
-    found = scale.frame(frame)
-    assert found.metric_scale is expected
-    if expected:
-        assert found.map_from_camera is not None
-        assert found.covariance is not None
-        assert found.map_from_camera[:3].tolist() == [12.0, 0.0, 0.0]
-        assert np.diag(found.covariance).tolist() == [9.0, 9.0, 9.0, 1.0, 1.0, 1.0]
-        assert found.camera_from_reference is pose
 
 
 def keyframes(updates: list[MapUpdate]) -> dict[int, tuple[int, npt.NDArray[np.float64]]]:
