@@ -9,7 +9,7 @@
 namespace kinemap {
 
 struct VocabularyTrainerOptions {
-  int branching = 8;      ///< children a node
+  int branching = 8;       ///< children a node
   int depth = 5;           ///< levels below the root
   int iterations = 12;     ///< of each clustering, at most
   int least_of_node = 12;  ///< descriptors; a node with fewer is a word

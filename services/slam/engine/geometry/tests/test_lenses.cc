@@ -41,7 +41,7 @@ TEST(Fisheye, ErrorsGrowWithTheUndistortedImage) {
   const double across = (camera.Undistort(raw + Eigen::Vector2d(0, step)) - pixel).norm() / step;
   const double along = (camera.Undistort(raw + Eigen::Vector2d(step, 0)) - pixel).norm() / step;
   EXPECT_NEAR(camera.SpreadAt(pixel), std::sqrt(0.5 * (along * along + across * across)), 0.02);
-  EXPECT_EQ(CameraModel(640, 480, 200, 200, 320, 240, {-0.2, 0, 0, 0}).SpreadAt({600, 400}), 1);
+  EXPECT_EQ(CameraModel(640, 480, 200, 200, 320, 240, {-0.02, 0, 0, 0}).SpreadAt({600, 400}), 1);
 }
 
 TEST(Lenses, AreRefusedByName) {
