@@ -42,6 +42,7 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   mapper.merge_delay_frames = options.merge_delay_frames;
   mapper.bundle.keyframes = options.local_bundle_keyframes;
   mapper.final_bundle.radial_sigma = options.radial_sigma;
+  mapper.final_bundle.right_shift_sigma_px = options.right_shift_sigma_px;
   return mapper;
 }
 

@@ -30,6 +30,8 @@ void EngineOptions::Check() const {
   Require(local_bundle_keyframes >= 2, "local_bundle_keyframes", "at least 2", local_bundle_keyframes);
   Require(radial_sigma >= 0 && radial_sigma <= 1, "radial_sigma", "0 to 1", radial_sigma);
   Require(threads >= 1 && threads <= 64, "threads", "1 to 64", threads);
+  Require(right_shift_sigma_px >= 0 && right_shift_sigma_px <= 10, "right_shift_sigma_px", "0 to 10",
+          right_shift_sigma_px);
   Require(depth_baseline_m > 0 && depth_baseline_m <= 100, "depth_baseline_m", "above 0, at most 100",
           depth_baseline_m);
   Require(opencv_threads >= 0, "opencv_threads", "0 or more", opencv_threads);

@@ -103,6 +103,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
       .def_readwrite("threads", &EngineOptions::threads)
       .def_readwrite("loop_closing", &EngineOptions::loop_closing)
+      .def_readwrite("right_shift_sigma_px", &EngineOptions::right_shift_sigma_px)
       .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)

@@ -95,9 +95,13 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
     ordering->AddElementToGroup(&bundle->radial, 1);
   }
   if (has_right_image) {
-    problem.AddResidualBlock(new ZeroPriorCost(bundle_options.right_shift_sigma_px), nullptr, &bundle->right_shift_px);
     ordering->AddElementToGroup(&bundle->right_shift_px, 1);
-    if (camera.right_is_virtual()) problem.SetParameterBlockConstant(&bundle->right_shift_px);
+    if (bundle_options.right_shift_sigma_px > 0 && !camera.right_is_virtual()) {
+      problem.AddResidualBlock(new ZeroPriorCost(bundle_options.right_shift_sigma_px), nullptr,
+                               &bundle->right_shift_px);
+    } else {
+      problem.SetParameterBlockConstant(&bundle->right_shift_px);
+    }
   }
   ceres::Solver::Options options;
   options.linear_solver_type = free_cameras > kMostDenseCameras ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
