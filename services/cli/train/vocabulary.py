@@ -27,8 +27,8 @@ def vocabulary(
         list[Path] | None, typer.Option(metavar="FOLDER", help="Learn from these images instead; may be repeated.")
     ] = None,
     every: Annotated[int, typer.Option(min=1, help="With --images: only every so manieth.")] = 1,
-    branching: Annotated[int, typer.Option(help="Children a node of the tree.")] = 10,
-    depth: Annotated[int, typer.Option(help="Levels of the tree.")] = 4,
+    branching: Annotated[int, typer.Option(help="Children a node of the tree.")] = 8,
+    depth: Annotated[int, typer.Option(help="Levels of the tree.")] = 5,
     features: Annotated[int, typer.Option(help="Features an image.")] = 2000,
     seed: Annotated[int, typer.Option(min=0, help="Of the clustering's first centres.")] = 0,
 ) -> None:

@@ -9,8 +9,8 @@
 namespace kinemap {
 
 struct VocabularyTrainerOptions {
-  int branching = 10;      ///< children a node
-  int depth = 4;           ///< levels below the root
+  int branching = 8;       ///< children a node
+  int depth = 5;           ///< levels below the root
   int iterations = 12;     ///< of each clustering, at most
   int least_of_node = 12;  ///< descriptors; a node with fewer is a word
   uint64_t seed = 0;
