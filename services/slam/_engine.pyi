@@ -57,6 +57,7 @@ class EngineOptions:
     threads: int  # 2, of feature extraction; results are the same with any number
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
+    wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
@@ -107,7 +108,10 @@ class TrackingResult:
         """A place of another map was recognised; map_id may have changed."""
     @property
     def stage_ms(self) -> dict[str, float]:
-        """Wall-clock ms: extract, merge, match, local_map, mapping, loop; background: solving beside tracking."""
+        """Wall-clock ms: extract, merge, match, local_map, mapping, loop."""
+    @property
+    def background_ms(self) -> float:
+        """Wall-clock ms that what was merged of loops took beside tracking."""
 
 class BagOfWords:
     """What an image shows, in words of a vocabulary."""

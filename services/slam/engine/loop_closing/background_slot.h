@@ -26,10 +26,10 @@ class BackgroundSlot {
   BackgroundSlot& operator=(const BackgroundSlot&) = delete;
 
   bool IsFree() const { return !running_.valid(); }
-  bool IsDue(int64_t frame) const { return running_.valid() && frame >= due_frame_; }
-  /// Whether Take would not wait.
-  bool IsSolved() const {
-    return running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  /// From its frame on; unless `wait`, only once Take would not have to wait.
+  bool IsDue(int64_t frame, bool wait) const {
+    if (IsFree() || frame < due_frame_) return false;
+    return wait || running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
 
   /// The slot must be free.

@@ -52,13 +52,13 @@ void LoopCloser::StartJoining(Atlas* atlas, const VerifiedLoop& loop, int64_t fr
 }
 
 bool LoopCloser::IsDue(int64_t frame_index) const {
-  return graph_slot_.IsDue(frame_index) || bundle_slot_.IsDue(frame_index);
+  return graph_slot_.IsDue(frame_index, options_.wait) || bundle_slot_.IsDue(frame_index, options_.wait);
 }
 
 LoopEvents LoopCloser::Merge(Atlas* atlas, int64_t frame_index) {
   LoopEvents events;
-  if (bundle_slot_.IsDue(frame_index)) Adjust(atlas, &events);
-  if (graph_slot_.IsDue(frame_index)) Join(atlas, frame_index, &events);
+  if (bundle_slot_.IsDue(frame_index, options_.wait)) Adjust(atlas, &events);
+  if (graph_slot_.IsDue(frame_index, options_.wait)) Join(atlas, frame_index, &events);
   return events;
 }
 

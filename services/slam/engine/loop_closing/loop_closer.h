@@ -25,6 +25,7 @@ struct LoopCloserOptions {
   int keyframes_between = 10;          ///< that a map gains after a loop before the next is looked for
   bool fixed_scale = false;            ///< stereo or depth keep the units of all maps equal
   uint64_t seed = 0;
+  bool wait = true;  ///< false: what is due but not solved is merged later, at a frame that depends on the machine
   /// Frames until a result is merged, so that a thread has time to compute it: fixed, and by the problem's size.
   int shortest_delay_frames = 3;
   int graph_edges_per_frame = 1000;
