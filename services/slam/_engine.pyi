@@ -111,7 +111,7 @@ class TrackingResult:
         """Wall-clock ms: extract, merge, match, local_map, mapping, loop."""
     @property
     def background_ms(self) -> float:
-        """Wall-clock ms that what was merged of loops took beside tracking."""
+        """Processor time, beside tracking, of what was merged of loops."""
 
 class BagOfWords:
     """What an image shows, in words of a vocabulary."""

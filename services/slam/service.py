@@ -52,7 +52,13 @@ class SlamService(FrameService):
         self._map_id = 0
         self._objects: Objects | None = None
         self._state = TrackingState.INITIALIZING
-        self._counts = {"keyframes_inserted": 0.0, "frames_lost": 0.0, "moving_unplaced": 0.0, "loops_closed": 0.0, "maps_merged": 0.0}
+        self._counts = {
+            "keyframes_inserted": 0.0,
+            "frames_lost": 0.0,
+            "moving_unplaced": 0.0,
+            "loops_closed": 0.0,
+            "maps_merged": 0.0,
+        }
 
     def process(self, bundle: Bundle) -> list[Outgoing]:
         """Track one frame."""

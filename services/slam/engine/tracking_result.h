@@ -41,7 +41,7 @@ struct TrackingResult {
   bool metric_scale = false;
   bool loop_closed = false;  ///< a place of this map was recognised; many keyframes moved
   bool maps_merged = false;  ///< a place of another map was recognised; map_id may have changed
-  double background_ms = 0;  ///< that what was merged of loops took beside tracking; for reports only
+  double background_ms = 0;  ///< processor time, beside tracking, of what was merged of loops
   StageTimes stage_ms;
 };
 

@@ -133,7 +133,7 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   const SimilarityTransform keyframe_anchor(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(),
                                             sides.keyframe.scale);
   return VerifiedLoop{keyframe_id, candidate_id,
-                      candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor,
+                      candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor, fixed_scale,
                       std::move(matches)};
 }
 
