@@ -56,6 +56,8 @@ def tracked_frame_to_message(record: TrackedFrame) -> slam_pb2.TrackedFrame:
         handling=record.handling,
         moving_unplaced=record.moving_unplaced,
         stage_ms=[slam_pb2.StageTime(stage=stage, ms=ms) for stage, ms in record.stage_ms.items()],
+        loop_closed=record.loop_closed,
+        maps_merged=record.maps_merged,
     )
 
 
@@ -82,6 +84,8 @@ def tracked_frame_to_record(message: slam_pb2.TrackedFrame) -> TrackedFrame:
         message.handling,
         message.moving_unplaced,
         {time.stage: time.ms for time in message.stage_ms},
+        message.loop_closed,
+        message.maps_merged,
     )
 
 

@@ -48,6 +48,10 @@ class TrackedFrame:
     handling: str
     moving_unplaced: int = 0
     stage_ms: dict[str, float] = field(default_factory=dict)
+    loop_closed: bool = False
+    """a place of this map was recognised: many keyframes moved"""
+    maps_merged: bool = False
+    """a place of another map was recognised: both are one now"""
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,7 @@ class EngineOptions:
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
     right_shift_sigma_px: float  # 0.1: the same of the right image's columns, found with it; 0: the pair is exact
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
+    wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
@@ -115,7 +116,10 @@ class TrackingResult:
         """A place of another map was recognised; map_id may have changed."""
     @property
     def stage_ms(self) -> dict[str, float]:
-        """Wall-clock ms: extract, merge, match, local_map, mapping, loop; background: solving beside tracking."""
+        """Wall-clock ms: extract, merge, match, local_map, mapping, loop."""
+    @property
+    def background_ms(self) -> float:
+        """Processor time, beside tracking, of what was merged of loops."""
 
 class BagOfWords:
     """What an image shows, in words of a vocabulary."""

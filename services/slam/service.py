@@ -42,6 +42,7 @@ class SlamService(FrameService):
 
     def __init__(self, config: Config) -> None:
         self._options = config.slam
+        self._lossless = config.delivery.mode == "lossless"
         self._base_from_camera = np.array(config.mapstore.base_from_camera)
         self._log = get_logger(NAME)
         self._engine: SlamEngine | None = None
@@ -51,7 +52,13 @@ class SlamService(FrameService):
         self._map_id = 0
         self._objects: Objects | None = None
         self._state = TrackingState.INITIALIZING
-        self._counts = {"keyframes_inserted": 0.0, "frames_lost": 0.0, "moving_unplaced": 0.0}
+        self._counts = {
+            "keyframes_inserted": 0.0,
+            "frames_lost": 0.0,
+            "moving_unplaced": 0.0,
+            "loops_closed": 0.0,
+            "maps_merged": 0.0,
+        }
 
     def process(self, bundle: Bundle) -> list[Outgoing]:
         """Track one frame."""
@@ -107,6 +114,8 @@ class SlamService(FrameService):
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
             radial_sigma=options.radial_sigma,
+            loop_closing=options.loop_closing,
+            wait_for_loops=self._lossless,
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )
@@ -141,6 +150,12 @@ class SlamService(FrameService):
         if frame.state is not self._state:
             self._log.info("tracking_state", state=frame.state.name.lower(), reason=frame.reason or "-")
             self._state = frame.state
+        if frame.loop_closed:
+            self._log.info("loop_closed", map_id=frame.map_id, timestamp_ns=frame.timestamp_ns)
+        if frame.maps_merged:
+            self._log.info("maps_merged", map_id=frame.map_id, timestamp_ns=frame.timestamp_ns)
+        self._counts["loops_closed"] += frame.loop_closed
+        self._counts["maps_merged"] += frame.maps_merged
         self._counts["keyframes_inserted"] += frame.keyframe_inserted
         self._counts["frames_lost"] += frame.state is TrackingState.LOST
         self._counts["moving_unplaced"] += frame.moving_unplaced

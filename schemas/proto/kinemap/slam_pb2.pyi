@@ -34,7 +34,7 @@ class StageTime(_message.Message):
     def __init__(self, stage: _Optional[str] = ..., ms: _Optional[float] = ...) -> None: ...
 
 class TrackedFrame(_message.Message):
-    __slots__ = ("version", "timestamp_ns", "state", "reason", "map_id", "map_from_camera", "covariance", "reference_keyframe_id", "camera_from_reference", "features", "tracked_landmarks", "keyframe_inserted", "masks", "metric_scale", "handling", "moving_unplaced", "stage_ms")
+    __slots__ = ("version", "timestamp_ns", "state", "reason", "map_id", "map_from_camera", "covariance", "reference_keyframe_id", "camera_from_reference", "features", "tracked_landmarks", "keyframe_inserted", "masks", "metric_scale", "handling", "moving_unplaced", "stage_ms", "loop_closed", "maps_merged")
     VERSION_FIELD_NUMBER: _ClassVar[int]
     TIMESTAMP_NS_FIELD_NUMBER: _ClassVar[int]
     STATE_FIELD_NUMBER: _ClassVar[int]
@@ -52,6 +52,8 @@ class TrackedFrame(_message.Message):
     HANDLING_FIELD_NUMBER: _ClassVar[int]
     MOVING_UNPLACED_FIELD_NUMBER: _ClassVar[int]
     STAGE_MS_FIELD_NUMBER: _ClassVar[int]
+    LOOP_CLOSED_FIELD_NUMBER: _ClassVar[int]
+    MAPS_MERGED_FIELD_NUMBER: _ClassVar[int]
     version: int
     timestamp_ns: int
     state: TrackingState
@@ -69,7 +71,9 @@ class TrackedFrame(_message.Message):
     handling: str
     moving_unplaced: int
     stage_ms: _containers.RepeatedCompositeFieldContainer[StageTime]
-    def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., state: _Optional[_Union[TrackingState, str]] = ..., reason: _Optional[str] = ..., map_id: _Optional[int] = ..., map_from_camera: _Optional[_Iterable[float]] = ..., covariance: _Optional[_Iterable[float]] = ..., reference_keyframe_id: _Optional[int] = ..., camera_from_reference: _Optional[_Iterable[float]] = ..., features: _Optional[int] = ..., tracked_landmarks: _Optional[int] = ..., keyframe_inserted: _Optional[bool] = ..., masks: _Optional[_Union[MaskSource, str]] = ..., metric_scale: _Optional[bool] = ..., handling: _Optional[str] = ..., moving_unplaced: _Optional[int] = ..., stage_ms: _Optional[_Iterable[_Union[StageTime, _Mapping]]] = ...) -> None: ...
+    loop_closed: bool
+    maps_merged: bool
+    def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., state: _Optional[_Union[TrackingState, str]] = ..., reason: _Optional[str] = ..., map_id: _Optional[int] = ..., map_from_camera: _Optional[_Iterable[float]] = ..., covariance: _Optional[_Iterable[float]] = ..., reference_keyframe_id: _Optional[int] = ..., camera_from_reference: _Optional[_Iterable[float]] = ..., features: _Optional[int] = ..., tracked_landmarks: _Optional[int] = ..., keyframe_inserted: _Optional[bool] = ..., masks: _Optional[_Union[MaskSource, str]] = ..., metric_scale: _Optional[bool] = ..., handling: _Optional[str] = ..., moving_unplaced: _Optional[int] = ..., stage_ms: _Optional[_Iterable[_Union[StageTime, _Mapping]]] = ..., loop_closed: _Optional[bool] = ..., maps_merged: _Optional[bool] = ...) -> None: ...
 
 class MapUpdate(_message.Message):
     __slots__ = ("version", "timestamp_ns", "map_id", "metric_scale", "keyframe_id", "keyframe_timestamp_ns", "keyframe_map_id", "keyframe_pose", "keyframe_culled", "keyframe_parent_id", "landmark_id", "landmark_anchor_id", "landmark_position", "landmark_state", "landmark_category", "landmark_object_id", "landmark_first_seen_ns", "landmark_last_seen_ns", "landmark_valid_until_ns", "removed_landmark_id", "frame_timestamp_ns", "frame_reference_keyframe_id", "frame_camera_from_reference")

@@ -24,6 +24,9 @@ class SlamConfig(BaseModel):
     radial_sigma: float = Field(
         0.01, ge=0, description="radial distortion the calibration may have left, found at the end; 0: it is exact"
     )
+    loop_closing: bool = Field(
+        True, description="recognise places seen before: take back the drift since, and join maps"
+    )
     new_map_after_lost: int = Field(
         50, ge=1, description="lost frames after which a new map begins; the old one stays in the store"
     )

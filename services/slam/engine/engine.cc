@@ -49,6 +49,7 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
 LoopCloserOptions ClosingOptions(const EngineOptions& options) {
   LoopCloserOptions closer;
   closer.seed = options.seed;
+  closer.wait = options.wait_for_loops;
   return closer;
 }
 
@@ -257,7 +258,7 @@ void Engine::MergeLoops(TrackingResult* result) {
   result->maps_merged = events.maps_merged > 0;
   result->map_id = atlas_.active_map_id();
   result->stage_ms.loop_ms = stopwatch.ElapsedMs();
-  result->stage_ms.background_ms = events.background_ms;
+  result->background_ms = events.background_ms;
 }
 
 void Engine::LookForLoops(KeyframeId mapped, TrackingResult* result) {

@@ -26,6 +26,7 @@ struct EngineOptions {
   bool loop_closing = true;         ///< recognises places seen before; needs a vocabulary
   double right_shift_sigma_px = 0.1;  ///< the same of the right image's columns, found with the distortion
   double depth_baseline_m = 0.5;      ///< of the pair (1 px) that a depth camera without a right image is as good as
+  bool wait_for_loops = true;         ///< false: a loop is merged when it is solved, not at a fixed frame (realtime)
   int opencv_threads = 1;             ///< for the whole process; 0 leaves OpenCV as it is
   int64_t map_id = 0;                 ///< ids start at map_id << 32; 0 <= map_id < 2^31
   std::string vocabulary_path;        ///< of the places' words; empty: no place is recognised but by its looks nearby

@@ -15,13 +15,12 @@ enum class TrackingState : int { kInitializing = 0, kTracking = 1, kLost = 2 };
 
 /// Wall-clock milliseconds of each step of one frame; for reports only, no result depends on them.
 struct StageTimes {
-  double extract_ms = 0;     ///< begin_frame
-  double merge_ms = 0;       ///< waiting for and merging the background's bundle adjustment
-  double match_ms = 0;       ///< first pose: last frame, reference keyframe or relocalisation; or initialisation
-  double local_map_ms = 0;   ///< search in the local map and final pose
-  double mapping_ms = 0;     ///< keyframe insertion
-  double loop_ms = 0;        ///< looking for a loop, and merging what came of one
-  double background_ms = 0;  ///< what was merged of loops took this long beside tracking
+  double extract_ms = 0;    ///< begin_frame
+  double merge_ms = 0;      ///< waiting for and merging the background's bundle adjustment
+  double match_ms = 0;      ///< first pose: last frame, reference keyframe or relocalisation; or initialisation
+  double local_map_ms = 0;  ///< search in the local map and final pose
+  double mapping_ms = 0;    ///< keyframe insertion
+  double loop_ms = 0;       ///< looking for a loop, and merging what came of one
 };
 
 struct TrackingResult {
@@ -42,6 +41,7 @@ struct TrackingResult {
   bool metric_scale = false;
   bool loop_closed = false;  ///< a place of this map was recognised; many keyframes moved
   bool maps_merged = false;  ///< a place of another map was recognised; map_id may have changed
+  double background_ms = 0;  ///< processor time, beside tracking, of what was merged of loops
   StageTimes stage_ms;
 };
 

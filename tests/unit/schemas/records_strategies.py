@@ -80,6 +80,8 @@ def _tracked_frames() -> st.SearchStrategy[r.TrackedFrame]:
         handling=st.sampled_from(["base", "dynamic", "moving"]),
         moving_unplaced=st.integers(0, 999),
         stage_ms=st.dictionaries(WORDS, NUMBERS, max_size=3),
+        loop_closed=st.booleans(),
+        maps_merged=st.booleans(),
     )
 
 

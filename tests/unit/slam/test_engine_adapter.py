@@ -240,3 +240,35 @@ class TestWhatItRefuses:
     def test_a_camera_without_a_focal_length(self) -> None:
         with pytest.raises(InputError, match="focal length fx, got 0"):
             SlamEngine(CameraCalibration(0, 640, 480, np.diag([0.0, 500.0, 1.0])))
+
+
+def test_a_closed_loop_and_a_merged_map_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    room = TexturedRoom(seed=1)
+    engine = SlamEngine(calibration(room))
+    result_of_frame = engine._engine.finish_frame
+
+    class Recognised:
+        loop_closed, maps_merged = True, True
+
+        def __init__(self, *arguments: object) -> None:
+            self._result = result_of_frame(*arguments)
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(self._result, name)
+
+    engine.begin_frame(Image(1, room.render(0)[0]))
+    frame = engine.finish_frame(None, MaskSource.NO_MASKS)
+    assert not frame.loop_closed
+    assert not frame.maps_merged
+    engine.begin_frame(Image(2, room.render(1)[0]))
+    monkeypatch.setattr(engine, "_engine", type("Told", (), {"finish_frame": staticmethod(Recognised)}))
+    frame = engine.finish_frame(None, MaskSource.NO_MASKS)
+    assert frame.loop_closed
+    assert frame.maps_merged
+
+
+def test_without_a_vocabulary_or_with_loop_closing_off_the_engine_runs() -> None:
+    room = TexturedRoom(seed=1)
+    for settings in (EngineSettings(vocabulary_path=""), EngineSettings(loop_closing=False)):
+        tracked, _ = drive(SlamEngine(calibration(room), settings), room, 8)
+        assert tracked[-1].state is TrackingState.TRACKING

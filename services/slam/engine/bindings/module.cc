@@ -105,6 +105,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("loop_closing", &EngineOptions::loop_closing)
       .def_readwrite("right_shift_sigma_px", &EngineOptions::right_shift_sigma_px)
       .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
+      .def_readwrite("wait_for_loops", &EngineOptions::wait_for_loops)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("vocabulary_path", &EngineOptions::vocabulary_path)
@@ -128,6 +129,7 @@ void BindResult(py::module_& module) {
       .def_readonly("metric_scale", &TrackingResult::metric_scale)
       .def_readonly("loop_closed", &TrackingResult::loop_closed)
       .def_readonly("maps_merged", &TrackingResult::maps_merged)
+      .def_readonly("background_ms", &TrackingResult::background_ms)
       .def_property_readonly("stage_ms", [](const TrackingResult& result) {
         const StageTimes& times = result.stage_ms;
         py::dict stages;
@@ -137,7 +139,6 @@ void BindResult(py::module_& module) {
         stages["local_map"] = times.local_map_ms;
         stages["mapping"] = times.mapping_ms;
         stages["loop"] = times.loop_ms;
-        stages["background"] = times.background_ms;
         return stages;
       });
 }

@@ -2,6 +2,7 @@
 #include "geometry/sim3_ransac.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -18,21 +19,27 @@ double SquaredError(const CameraModel& camera, const Eigen::Vector3d& point, con
   return (camera.Project(point) - pixel_px).squaredNorm() * inverse_variance;
 }
 
-}  // namespace
-
-Eigen::Vector2d TwoWayError(const CameraModel& camera, const SimilarityTransform& first_from_second,
-                            const PointPair& pair) {
-  return {
-      SquaredError(camera, first_from_second * pair.in_second, pair.first_px, pair.first_inverse_variance),
-      SquaredError(camera, first_from_second.Inverse() * pair.in_first, pair.second_px, pair.second_inverse_variance)};
+/// After so many samples one is free of wrong pairs with a probability of 99.9 % (Fischler and Bolles 1981).
+double SamplesNeeded(int inliers, size_t pairs) {
+  const double good_sample = std::pow(static_cast<double>(inliers) / static_cast<double>(pairs), kSampleSize);
+  return good_sample >= 1 ? 1 : std::log(1 - 0.999) / std::log(1 - good_sample);
 }
+
+}  // namespace
 
 Sim3Estimate CountInliers(const CameraModel& camera, const SimilarityTransform& first_from_second,
                           const std::vector<PointPair>& pairs, double bound) {
   Sim3Estimate estimate;
   estimate.first_from_second = first_from_second;
+  estimate.inlier.reserve(pairs.size());
+  const Eigen::Matrix3d turn = first_from_second.scale * first_from_second.rotation.toRotationMatrix();
+  const SimilarityTransform second_from_first = first_from_second.Inverse();
+  const Eigen::Matrix3d turn_back = second_from_first.scale * second_from_first.rotation.toRotationMatrix();
   for (const PointPair& pair : pairs) {
-    estimate.inlier.push_back(TwoWayError(camera, first_from_second, pair).maxCoeff() <= bound);
+    const Eigen::Vector3d in_first = turn * pair.in_second + first_from_second.translation;
+    const Eigen::Vector3d in_second = turn_back * pair.in_first + second_from_first.translation;
+    estimate.inlier.push_back(SquaredError(camera, in_first, pair.first_px, pair.first_inverse_variance) <= bound &&
+                              SquaredError(camera, in_second, pair.second_px, pair.second_inverse_variance) <= bound);
     if (estimate.inlier.back()) ++estimate.inliers;
   }
   return estimate;
@@ -55,9 +62,12 @@ std::optional<Sim3Estimate> EstimateSim3(const CameraModel& camera, const std::v
   };
   std::vector<size_t> order(pairs.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+  double needed = options.iterations;
+  for (int iteration = 0; iteration < needed; ++iteration) {
     for (size_t k = 0; k < kSampleSize; ++k) std::swap(order[k], order[k + random.Below(order.size() - k)]);
+    const int inliers_before = best.inliers;
     consider({order.begin(), order.begin() + kSampleSize});
+    if (best.inliers > inliers_before) needed = std::min(needed, SamplesNeeded(best.inliers, pairs.size()));
   }
   std::vector<size_t> inliers;
   for (size_t i = 0; i < best.inlier.size(); ++i) {

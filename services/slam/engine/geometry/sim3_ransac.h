@@ -24,12 +24,8 @@ struct Sim3Estimate {
   int inliers = 0;
 };
 
-/// Squared error, in variances, of the second camera's point in the first image and the other way round; infinite
-/// behind a camera.
-Eigen::Vector2d TwoWayError(const CameraModel& camera, const SimilarityTransform& first_from_second,
-                            const PointPair& pair);
-
-/// Marks the pairs whose errors are both below `bound`.
+/// Marks the pairs whose squared errors, the second camera's point in the first image and the other way round, are both
+/// at most `bound` variances.
 Sim3Estimate CountInliers(const CameraModel& camera, const SimilarityTransform& first_from_second,
                           const std::vector<PointPair>& pairs, double bound);
 

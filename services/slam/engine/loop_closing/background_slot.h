@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <time.h>
+
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -26,10 +28,10 @@ class BackgroundSlot {
   BackgroundSlot& operator=(const BackgroundSlot&) = delete;
 
   bool IsFree() const { return !running_.valid(); }
-  bool IsDue(int64_t frame) const { return running_.valid() && frame >= due_frame_; }
-  /// Whether Take would not wait.
-  bool IsSolved() const {
-    return running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  /// From its frame on; unless `wait`, only once Take would not have to wait.
+  bool IsDue(int64_t frame, bool wait) const {
+    if (IsFree() || frame < due_frame_) return false;
+    return wait || running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
 
   /// The slot must be free.
@@ -41,10 +43,12 @@ class BackgroundSlot {
     cancelled_ = std::make_shared<std::atomic<bool>>(false);
     running_ = std::async(
         std::launch::async, [problem = std::move(problem), solve = std::move(solve), cancelled = cancelled_]() mutable {
-          const auto start = std::chrono::steady_clock::now();
           solve(*cancelled, &problem);
-          const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-          return Solved{std::move(problem), elapsed.count()};
+          // The thread is new, so that its processor time is the solving's.
+          timespec time{};
+          clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+          return Solved{std::move(problem),
+                        1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec)};
         });
   }
 
@@ -62,7 +66,7 @@ class BackgroundSlot {
     abandoned_ = std::move(running_);
   }
 
-  /// How long the last problem taken was being solved; for reports only.
+  /// Processor time of the last problem taken; for reports only.
   double solve_ms() const { return solve_ms_; }
 
  private:

@@ -2,6 +2,7 @@
 #include "loop_closing/loop_closer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "loop_closing/map_correction.h"
@@ -9,14 +10,25 @@
 
 namespace kinemap {
 
+namespace {
+
+constexpr int kLeastDepths = 100;
+
+/// Stereo and depth give the units of a map, so that they are the same at both ends of a loop.
+bool MeasuresDepth(const Keyframe& keyframe) {
+  const std::vector<Keypoint>& keypoints = keyframe.features->keypoints;
+  return std::count_if(keypoints.begin(), keypoints.end(),
+                       [](const Keypoint& keypoint) { return std::isfinite(keypoint.right_x_px); }) >= kLeastDepths;
+}
+
+}  // namespace
+
 LoopCloser::LoopCloser(const LoopCloserOptions& options, const CameraModel& camera)
     : options_(options),
       camera_(camera),
       detector_(options.detector),
       verifier_(options.verifier, camera),
-      fuser_(camera) {
-  options_.pose_graph.fixed_scale = options.fixed_scale;
-}
+      fuser_(camera) {}
 
 void LoopCloser::Look(Atlas* atlas, const PlaceIndex& places, KeyframeId keyframe_id, int64_t frame_index) {
   ++keyframes_since_;
@@ -24,7 +36,9 @@ void LoopCloser::Look(Atlas* atlas, const PlaceIndex& places, KeyframeId keyfram
   const SlamMap* map = atlas->MapOf(keyframe_id);
   for (const KeyframeId candidate : detector_.Detect(atlas, places, keyframe_id)) {
     RandomEngine random(options_.seed, map->keyframe(keyframe_id).timestamp_ns);
-    const auto loop = verifier_.Verify(atlas, places, keyframe_id, candidate, options_.fixed_scale, random);
+    const bool fixed_scale =
+        MeasuresDepth(map->keyframe(keyframe_id)) && MeasuresDepth(atlas->MapOf(candidate)->keyframe(candidate));
+    const auto loop = verifier_.Verify(atlas, places, keyframe_id, candidate, fixed_scale, random);
     if (!loop) continue;
     StartJoining(atlas, *loop, frame_index);
     return;
@@ -36,6 +50,8 @@ void LoopCloser::StartJoining(Atlas* atlas, const VerifiedLoop& loop, int64_t fr
   bundle_slot_.Cancel();
   loop_ = loop;
   detector_.Forget();
+  PoseGraphOptions options = options_.pose_graph;
+  options.fixed_scale = loop.fixed_scale;
   GraphProblem problem;
   const SlamMap* map = atlas->MapOf(loop.keyframe_id);
   if (map == atlas->MapOf(loop.matched_id)) {
@@ -45,20 +61,20 @@ void LoopCloser::StartJoining(Atlas* atlas, const VerifiedLoop& loop, int64_t fr
                         static_cast<int64_t>(problem.before.edges.size()) / options_.graph_edges_per_frame;
   graph_slot_.Start(
       std::move(problem),
-      [options = options_.pose_graph](const std::atomic<bool>&, GraphProblem* graph) {
+      [options](const std::atomic<bool>&, GraphProblem* graph) {
         if (!graph->solved.nodes.empty()) SolvePoseGraph(options, &graph->solved);
       },
       frame_index + delay);
 }
 
 bool LoopCloser::IsDue(int64_t frame_index) const {
-  return graph_slot_.IsDue(frame_index) || bundle_slot_.IsDue(frame_index);
+  return graph_slot_.IsDue(frame_index, options_.wait) || bundle_slot_.IsDue(frame_index, options_.wait);
 }
 
 LoopEvents LoopCloser::Merge(Atlas* atlas, int64_t frame_index) {
   LoopEvents events;
-  if (bundle_slot_.IsDue(frame_index)) Adjust(atlas, &events);
-  if (graph_slot_.IsDue(frame_index)) Join(atlas, frame_index, &events);
+  if (bundle_slot_.IsDue(frame_index, options_.wait)) Adjust(atlas, &events);
+  if (graph_slot_.IsDue(frame_index, options_.wait)) Join(atlas, frame_index, &events);
   return events;
 }
 

@@ -20,15 +20,15 @@ struct LoopCloserOptions {
   LoopVerifierOptions verifier;
   EssentialGraphOptions essential_graph;
   PoseGraphOptions pose_graph;
-  BundleOptions bundle{10, 5, 1e-5, 0};
+  BundleOptions bundle{5, 5, 1e-5, 0};
   int most_adjusted_keyframes = 1000;  ///< newest, that move in the adjustment of the whole map
   int keyframes_between = 10;          ///< that a map gains after a loop before the next is looked for
-  bool fixed_scale = false;            ///< stereo or depth keep the units of all maps equal
   uint64_t seed = 0;
+  bool wait = true;  ///< false: what is due but not solved is merged later, at a frame that depends on the machine
   /// Frames until a result is merged, so that a thread has time to compute it: fixed, and by the problem's size.
   int shortest_delay_frames = 3;
   int graph_edges_per_frame = 1000;
-  int observations_per_frame = 2500;
+  int observations_per_frame = 1000;
 };
 
 /// What a call changed.
@@ -36,7 +36,7 @@ struct LoopEvents {
   int loops_closed = 0;
   int maps_merged = 0;
   bool map_adjusted = false;
-  double background_ms = 0;  ///< that solving took; for reports only
+  double background_ms = 0;  ///< processor time of the solving; for reports only
 };
 
 /// Recognises places in all maps and makes them one: a loop's error is distributed over its map by the essential graph,

@@ -36,14 +36,14 @@ struct LoopVerifier::Sides {
 };
 
 std::vector<LandmarkMatch> LoopVerifier::MatchWindow(const Sides& sides, const PlaceIndex& places) const {
-  const BagOfWords& bag = *places.bag(sides.keyframe.id);
+  const KeypointsByNode own(sides.map, sides.keyframe, *places.bag(sides.keyframe.id));
   std::map<int, LandmarkMatch> best_of_keypoint;
   std::map<LandmarkId, int> keypoint_of_landmark;
   for (const KeyframeId id : sides.window) {
     const BagOfWords* other_bag = places.bag(id);
     if (other_bag == nullptr) continue;
-    for (const LandmarkMatch& match : MatchByWords(sides.map, sides.keyframe, bag, sides.candidate_map,
-                                                   sides.candidate_map.keyframe(id), *other_bag)) {
+    const KeypointsByNode other(sides.candidate_map, sides.candidate_map.keyframe(id), *other_bag);
+    for (const LandmarkMatch& match : MatchByWords(own, other)) {
       // The keyframes of the window see the same landmarks; the first to match one decides.
       if (!keypoint_of_landmark.try_emplace(match.landmark_id, match.keypoint).second) continue;
       const auto [entry, is_new] = best_of_keypoint.try_emplace(match.keypoint, match);
@@ -111,9 +111,7 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   window.insert(window.begin(), candidate_id);
   std::vector<KeyframeId> around = candidate_map.covisibility().Neighbors(candidate_id, kSurroundingNeighbors);
   around.push_back(candidate_id);
-  const Sides sides{map,           map.keyframe(keyframe_id),
-                    candidate_map, candidate_map.keyframe(candidate_id),
-                    window,        LastingLandmarks(candidate_map, around)};
+  Sides sides{map, map.keyframe(keyframe_id), candidate_map, candidate_map.keyframe(candidate_id), window, {}};
 
   const std::vector<LandmarkMatch> by_words = MatchWindow(sides, places);
   if (by_words.size() < static_cast<size_t>(options_.min_word_matches)) return std::nullopt;
@@ -121,6 +119,7 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   ransac.fixed_scale = fixed_scale;
   const auto rough = EstimateSim3(camera_, Pairs(sides, by_words), ransac, random);
   if (!rough) return std::nullopt;
+  sides.landmarks = LastingLandmarks(candidate_map, around);
   const std::vector<LandmarkMatch> wide = Project(sides, rough->first_from_second, keyframe_id, kWideRadiusPx);
   const Sim3Estimate fine = Sim3Optimizer(camera_, fixed_scale).Optimize(rough->first_from_second, Pairs(sides, wide));
   if (fine.inliers < options_.min_sim3_inliers) return std::nullopt;
@@ -134,7 +133,7 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   const SimilarityTransform keyframe_anchor(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(),
                                             sides.keyframe.scale);
   return VerifiedLoop{keyframe_id, candidate_id,
-                      candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor,
+                      candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor, fixed_scale,
                       std::move(matches)};
 }
 

@@ -28,6 +28,7 @@ struct VerifiedLoop {
   KeyframeId matched_id;  ///< may lie in another map
   /// Between what is anchored at the two.
   SimilarityTransform matched_from_keyframe;
+  bool fixed_scale;                    ///< both sides are in the same units
   std::vector<LandmarkMatch> matches;  ///< keypoints of the keyframe, landmarks around the matched one
 };
 

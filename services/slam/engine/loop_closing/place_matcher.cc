@@ -12,18 +12,6 @@ namespace {
 
 constexpr double kWordRatio = 0.8;
 
-/// Keypoints that observe lasting landmarks, by their vocabulary node.
-std::map<uint32_t, std::vector<int>> ByNode(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag) {
-  std::map<uint32_t, std::vector<int>> keypoints;
-  for (size_t i = 0; i < keyframe.landmark_ids.size(); ++i) {
-    const Landmark* landmark = map.FindLandmark(keyframe.landmark_ids[i]);
-    const uint32_t node = bag.node_of_keypoint[i];
-    if (landmark == nullptr || !IsLasting(*landmark) || node == BagOfWords::kNoNode) continue;
-    keypoints[node].push_back(static_cast<int>(i));
-  }
-  return keypoints;
-}
-
 /// Of matches that meet in one train keypoint the nearest stays.
 template <typename Key>
 std::vector<LandmarkMatch> NearestOfEach(const std::vector<LandmarkMatch>& matches, Key key) {
@@ -40,46 +28,58 @@ std::vector<LandmarkMatch> NearestOfEach(const std::vector<LandmarkMatch>& match
 }  // namespace
 
 std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
-  std::set<LandmarkId> landmarks;
+  std::vector<LandmarkId> landmarks;
   for (const KeyframeId keyframe_id : keyframes) {
     for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
       const Landmark* landmark = map.FindLandmark(id);
-      if (landmark != nullptr && IsLasting(*landmark)) landmarks.insert(landmark->id);
+      if (landmark != nullptr && IsLasting(*landmark)) landmarks.push_back(landmark->id);
     }
   }
-  return {landmarks.begin(), landmarks.end()};
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
 }
 
-std::vector<LandmarkMatch> MatchByWords(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag,
-                                        const SlamMap& other_map, const Keyframe& other, const BagOfWords& other_bag) {
-  const std::map<uint32_t, std::vector<int>> others = ByNode(other_map, other, other_bag);
+KeypointsByNode::KeypointsByNode(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag)
+    : features_(keyframe.features) {
+  for (size_t i = 0; i < keyframe.landmark_ids.size(); ++i) {
+    if (bag.node_of_keypoint[i] == BagOfWords::kNoNode) continue;
+    const Landmark* landmark = map.FindLandmark(keyframe.landmark_ids[i]);
+    if (landmark == nullptr || !IsLasting(*landmark)) continue;
+    entries_.push_back(
+        {bag.node_of_keypoint[i], static_cast<int>(i), landmark->id, &keyframe.features->descriptors[i]});
+  }
+  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+    return a.node != b.node ? a.node < b.node : a.keypoint < b.keypoint;
+  });
+}
+
+std::vector<LandmarkMatch> MatchByWords(const KeypointsByNode& one, const KeypointsByNode& other) {
   std::vector<LandmarkMatch> matches;
   std::map<LandmarkId, int> keypoint_of_landmark;
-  for (const auto& [node, keypoints] : ByNode(map, keyframe, bag)) {
-    const auto candidates = others.find(node);
-    if (candidates == others.end()) continue;
-    for (const int keypoint : keypoints) {
-      int best = -1, best_distance = 257, second_distance = 257;
-      for (const int candidate : candidates->second) {
-        const int distance =
-            HammingDistance(keyframe.features->descriptors[keypoint], other.features->descriptors[candidate]);
-        if (distance < best_distance) {
-          second_distance = best_distance, best_distance = distance, best = candidate;
-        } else if (distance < second_distance) {
-          second_distance = distance;
-        }
+  auto first = other.entries().begin(), last = first;
+  for (const KeypointsByNode::Entry& entry : one.entries()) {
+    while (first != other.entries().end() && first->node < entry.node) last = ++first;
+    while (last != other.entries().end() && last->node == entry.node) ++last;
+    const KeypointsByNode::Entry* best = nullptr;
+    int best_distance = 257, second_distance = 257;
+    for (auto candidate = first; candidate != last; ++candidate) {
+      const int distance = HammingDistance(*entry.descriptor, *candidate->descriptor);
+      if (distance < best_distance) {
+        second_distance = best_distance, best_distance = distance, best = &*candidate;
+      } else if (distance < second_distance) {
+        second_distance = distance;
       }
-      if (best_distance > kStrictHammingDistance || best_distance >= kWordRatio * second_distance) continue;
-      const LandmarkId id = other_map.FindLandmark(other.landmark_ids[best])->id;
-      matches.push_back({keypoint, id, best_distance});
-      keypoint_of_landmark.try_emplace(id, best);
     }
+    if (best_distance > kStrictHammingDistance || best_distance >= kWordRatio * second_distance) continue;
+    matches.push_back({entry.keypoint, best->landmark_id, best_distance});
+    keypoint_of_landmark.try_emplace(best->landmark_id, best->keypoint);
   }
   matches = NearestOfEach(matches, [](const LandmarkMatch& match) { return match.landmark_id; });
   RotationConsistency rotation;
   for (size_t i = 0; i < matches.size(); ++i) {
-    rotation.Add(static_cast<int>(i), keyframe.features->keypoints[matches[i].keypoint].angle_deg,
-                 other.features->keypoints[keypoint_of_landmark[matches[i].landmark_id]].angle_deg);
+    rotation.Add(static_cast<int>(i), one.angle_deg(matches[i].keypoint),
+                 other.angle_deg(keypoint_of_landmark[matches[i].landmark_id]));
   }
   std::set<int> inconsistent;
   for (const int match : rotation.Inconsistent()) inconsistent.insert(match);

@@ -28,11 +28,30 @@ inline bool IsLasting(const FeatureLabel& label) {
 /// Lasting landmarks of these keyframes, ascending.
 std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes);
 
-/// Matches the keypoints of a keyframe that observe lasting landmarks of `map` with those of another keyframe, which
-/// may lie in another map: nearest of the same vocabulary node within 50 bits and clearly nearer than the second,
-/// all turning alike. The matches hold keypoints of `keyframe` and landmarks of `other_map`.
-std::vector<LandmarkMatch> MatchByWords(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag,
-                                        const SlamMap& other_map, const Keyframe& other, const BagOfWords& other_bag);
+/// A keyframe's keypoints that observe lasting landmarks, by the vocabulary node they fall under.
+class KeypointsByNode {
+ public:
+  KeypointsByNode(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag);
+
+  struct Entry {
+    uint32_t node;
+    int keypoint;
+    LandmarkId landmark_id;
+    const Descriptor* descriptor;
+  };
+  /// By node, then by keypoint.
+  const std::vector<Entry>& entries() const { return entries_; }
+  float angle_deg(int keypoint) const { return features_->keypoints[keypoint].angle_deg; }
+
+ private:
+  FrameFeaturesPtr features_;
+  std::vector<Entry> entries_;
+};
+
+/// Matches each keypoint of one keyframe with those of another, which may lie in another map: nearest of the same node
+/// within 50 bits and clearly nearer than the second, each landmark once, all turning alike. The matches hold keypoints
+/// of the one and landmarks of the other.
+std::vector<LandmarkMatch> MatchByWords(const KeypointsByNode& one, const KeypointsByNode& other);
 
 /// Matches landmarks with a keyframe's keypoints near where a camera at `camera_from_map` (the landmarks' map) would
 /// see them. Landmarks that the keyframe observes already are left out; every keypoint is matched once.

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optimization/map_bundle.h"
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "map/reprojection_check.h"
 
 namespace kinemap {
 
 BundleProblem CopyBundleProblem(const SlamMap& map, const std::set<KeyframeId>& moving) {
-  std::set<LandmarkId> landmarks;
+  std::vector<LandmarkId> landmarks;
   for (const KeyframeId id : moving) {
     for (const LandmarkId landmark_id : map.keyframe(id).landmark_ids) {
       const Landmark* landmark = map.FindLandmark(landmark_id);
-      if (landmark != nullptr && landmark->IsTrackable()) landmarks.insert(landmark->id);
+      if (landmark != nullptr && landmark->IsTrackable()) landmarks.push_back(landmark->id);
     }
   }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   BundleProblem problem;
   std::map<KeyframeId, int> camera_of;
   const auto camera_index = [&](KeyframeId id) {

@@ -194,8 +194,9 @@ TEST(BackgroundSlot, TakesAtItsFrameOrGivesUpWithoutATrace) {
         *number = 2;
       },
       7);
-  EXPECT_FALSE(slot.IsDue(6));
-  EXPECT_TRUE(slot.IsDue(7));
+  EXPECT_FALSE(slot.IsDue(6, true));
+  EXPECT_TRUE(slot.IsDue(7, true));
+  EXPECT_FALSE(slot.IsDue(7, false));
   EXPECT_THROW(slot.Start(1, nullptr, 8), std::logic_error);
   slot.Cancel();
   EXPECT_TRUE(slot.IsFree());
