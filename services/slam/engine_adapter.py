@@ -40,6 +40,7 @@ class EngineSettings:
     radial_sigma: float = 0.01
     threads: int = 2
     opencv_threads: int = 1
+    semi_dense: bool = False
     map_id: int = 0
     vocabulary_path: str = str(SHIPPED_VOCABULARY)
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
@@ -208,6 +209,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.radial_sigma = settings.radial_sigma
     options.threads = settings.threads
     options.opencv_threads = settings.opencv_threads
+    options.semi_dense = settings.semi_dense
     options.map_id = settings.map_id
     options.vocabulary_path = settings.vocabulary_path
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)

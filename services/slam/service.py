@@ -107,6 +107,7 @@ class SlamService(FrameService):
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
             radial_sigma=options.radial_sigma,
+            semi_dense=options.semi_dense,
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )
