@@ -27,6 +27,14 @@ _ARRAYS: dict[str, tuple[str, tuple[int, ...]]] = {
     "landmark_last_seen_ns": ("<i8", ()),
     "landmark_valid_until_ns": ("<i8", ()),
     "removed_landmark_id": ("<i8", ()),
+    "dense_keyframe_id": ("<i8", ()),
+    "dense_keyframe_points": ("<i4", ()),
+    "dense_point_position": ("<f4", (3,)),
+    "dense_point_depth_sigma": ("<f4", ()),
+    "dense_point_grey": ("u1", ()),
+    "dense_point_state": ("u1", ()),
+    "dense_point_category": ("<i2", ()),
+    "dense_point_object_id": ("<u4", ()),
     "frame_timestamp_ns": ("<i8", ()),
     "frame_reference_keyframe_id": ("<i8", ()),
     "frame_camera_from_reference": ("<f8", (7,)),
@@ -100,10 +108,13 @@ def map_update_to_message(record: MapUpdate) -> slam_pb2.MapUpdate:
 
 def map_update_to_record(message: slam_pb2.MapUpdate) -> MapUpdate:
     arrays = {name: array_of(name, getattr(message, name), *_flat(name)) for name in _ARRAYS}
-    for prefix in ("keyframe_", "landmark_", "frame_"):
+    for prefix in ("keyframe_", "landmark_", "dense_keyframe_", "dense_point_", "frame_"):
         rows = {name: len(array) for name, array in arrays.items() if name.startswith(prefix)}
         if len(set(rows.values())) > 1:
             raise ValueError(f"{prefix}* arrays have {rows} rows, expected the same number in each")
+    counts, points = arrays["dense_keyframe_points"], len(arrays["dense_point_grey"])
+    if (counts < 0).any() or counts.sum(dtype=np.int64) != points:
+        raise ValueError(f"dense_keyframe_points: expected numbers that add up to {points}, got {counts.tolist()}")
     return MapUpdate(message.timestamp_ns, message.map_id, message.metric_scale, **arrays)
 
 

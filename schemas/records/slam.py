@@ -72,6 +72,8 @@ class MapUpdate:
 
     A landmark's position is in its anchor keyframe's camera frame; `keyframe_pose` is the Sim(3) map_from_keyframe as
     tx ty tz qx qy qz qw scale; a culled keyframe stays as a pose-only node; `removed_landmark_id` are tombstones;
+    `dense_keyframe_*` are keyframes whose semi-dense map was finished, or replaced, with this update, each with its
+    number of rows of `dense_point_*` (positions in that keyframe's camera frame, seen at its time);
     `frame_*` are poses of earlier frames that became known with this update.
     """
 
@@ -94,6 +96,14 @@ class MapUpdate:
     landmark_last_seen_ns: npt.NDArray[np.int64] = _no_rows(np.int64)
     landmark_valid_until_ns: npt.NDArray[np.int64] = _no_rows(np.int64)
     removed_landmark_id: npt.NDArray[np.int64] = _no_rows(np.int64)
+    dense_keyframe_id: npt.NDArray[np.int64] = _no_rows(np.int64)
+    dense_keyframe_points: npt.NDArray[np.int32] = _no_rows(np.int32)
+    dense_point_position: npt.NDArray[np.float32] = _no_rows(np.float32, 3)
+    dense_point_depth_sigma: npt.NDArray[np.float32] = _no_rows(np.float32)
+    dense_point_grey: npt.NDArray[np.uint8] = _no_rows(np.uint8)
+    dense_point_state: npt.NDArray[np.uint8] = _no_rows(np.uint8)
+    dense_point_category: npt.NDArray[np.int16] = _no_rows(np.int16)
+    dense_point_object_id: npt.NDArray[np.uint32] = _no_rows(np.uint32)
     frame_timestamp_ns: npt.NDArray[np.int64] = _no_rows(np.int64)
     frame_reference_keyframe_id: npt.NDArray[np.int64] = _no_rows(np.int64)
     frame_camera_from_reference: npt.NDArray[np.float64] = _no_rows(np.float64, 7)

@@ -9,10 +9,10 @@ from services.runtime.errors import InputError, ResourceError
 
 APPLICATION_ID = 0x4B4D4150
 """'KMAP', SQLite's `PRAGMA application_id` of every kinemap map."""
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """`PRAGMA user_version`: what this kinemap writes, and the newest it reads."""
 
-_SCHEMA = Path(__file__).with_name("schema.sql")
+_ADDED_BY_VERSION = tuple(Path(__file__).with_name(name) for name in ("schema.sql", "schema_2.sql"))
 _BUSY_TIMEOUT_S = 10.0
 
 
@@ -29,8 +29,9 @@ def open_to_write(path: Path) -> sqlite3.Connection:
         raise ResourceError(f"{path}: cannot be opened to write ({_reason(error)})") from error
     try:
         if _tables(connection) == 0 and _pragma(connection, "application_id") == 0:
-            _create(connection)
+            _upgrade(connection, 0)
         _check(path, connection)
+        _upgrade(connection, _pragma(connection, "user_version"))
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
     except BaseException as error:
@@ -58,10 +59,13 @@ def open_to_read(path: Path) -> sqlite3.Connection:
     return connection
 
 
-def _create(connection: sqlite3.Connection) -> None:
-    """One transaction, so that two starts at once, or a kill, leave a whole schema or none."""
+def _upgrade(connection: sqlite3.Connection, version: int) -> None:
+    """One transaction, so that two starts at once, or a kill, leave a whole schema or the one before."""
+    if version == SCHEMA_VERSION:
+        return
     header = f"PRAGMA application_id = {APPLICATION_ID}; PRAGMA user_version = {SCHEMA_VERSION};"
-    connection.executescript(f"BEGIN IMMEDIATE; {header} {_SCHEMA.read_text(encoding='utf-8')} COMMIT;")
+    added = "\n".join(path.read_text(encoding="utf-8") for path in _ADDED_BY_VERSION[version:])
+    connection.executescript(f"BEGIN IMMEDIATE; {header} {added} COMMIT;")
 
 
 def _check(path: Path, connection: sqlite3.Connection) -> None:

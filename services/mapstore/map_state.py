@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The map in memory: takes the updates of one frame after the other and gives immutable views."""
 
+from collections.abc import Mapping
 from dataclasses import fields
 
 import numpy as np
@@ -62,6 +63,7 @@ class MapState:
         self._changed_objects: set[int] = set()
         self._newest: tuple[int, int, TrackingState, str, str] = (NOT_YET, 0, TrackingState.INITIALIZING, "", "")
         self._scale: tuple[int, bool] = (0, False)
+        self._dense_points: dict[int, int] = {}
         self.session = ""
 
     def add_frame(self, sequence: int, frame: TrackedFrame) -> None:
@@ -110,7 +112,13 @@ class MapState:
         ):
             self._changed_clusters |= clusters
             self._changed_objects |= objects
+        counts = zip(update.dense_keyframe_id.tolist(), update.dense_keyframe_points.tolist(), strict=True)
+        self.count_dense_points(dict(counts))
         return self._correct_frames(update)
+
+    def count_dense_points(self, by_keyframe: Mapping[int, int]) -> None:
+        """Takes the size of keyframes' semi-dense maps; their points stay in the file."""
+        self._dense_points.update(by_keyframe)
 
     def view(self) -> MapView:
         """The map now. Costs time in proportion to what changed since the last view and to the number of keyframes."""
@@ -131,6 +139,7 @@ class MapState:
             cameras=tuple(self._cameras),
             frames=FrameColumns(**self._frames.snapshot(*_FRAME_COLUMNS)),
             sightings=self._sightings,
+            dense_points=sum(self._dense_points.values()),
         )
 
     def _rows_of_keyframes(self, keyframe_ids: npt.NDArray[np.int64]) -> npt.NDArray[np.intp]:

@@ -71,6 +71,8 @@ class MapView:
     frames: FrameColumns
     sightings: Mapping[int, npt.NDArray[np.int64]]
     """object id -> times at which it was seen moving, rising"""
+    dense_points: int = 0
+    """of all semi-dense maps; they are in the file only"""
 
     def final_poses(self) -> npt.NDArray[np.float64]:
         """(F, 7) map_from_camera of every frame: camera_from_reference under the reference's newest pose; NaN for none.

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: Apache-2.0
--- A kinemap map, version 1. `PRAGMA application_id` is 0x4B4D4150 ("KMAP"), `PRAGMA user_version` is this version.
+-- A kinemap map, version 1; schema_2.sql is what version 2 adds. `PRAGMA application_id` is 0x4B4D4150 ("KMAP"), `PRAGMA user_version` is this version.
 -- Lengths are in metres where progress.metric_scale is 1, in map units otherwise; times are the images' capture times.
 
 CREATE TABLE progress (

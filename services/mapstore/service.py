@@ -98,7 +98,11 @@ class MapstoreService(FrameService):
         """The size of the map, by label."""
         view = self._live.view
         counts = {f"landmarks_{state.name.lower()}": float(view.counts_by_state()[state]) for state in MotionState}
-        return {**counts, "keyframes": float(np.count_nonzero(view.keyframes.culled == 0))}
+        return {
+            **counts,
+            "dense_points": float(view.dense_points),
+            "keyframes": float(np.count_nonzero(view.keyframes.culled == 0)),
+        }
 
     def close(self) -> None:
         """Stop answering HTTP, let go of the file."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from schemas.records import Density, MapUpdate, TrackedFrame
-from services.mapstore import map_file, map_rows
+from services.mapstore import dense_table, map_file, map_rows
 from services.mapstore.map_state import MapState
 from services.mapstore.map_view import NOT_YET
 from services.runtime.errors import InputError, KinemapError, ResourceError
@@ -96,6 +96,7 @@ class MapStore:
         removed = update.removed_landmark_id.tolist()
         many(map_rows.DELETE_LANDMARK, ((number,) for number in removed))
         many(map_rows.BURY_LANDMARK, ((number, sequence) for number in removed))
+        many(dense_table.REPLACE_CLOUD, dense_table.cloud_rows(update))
         many(map_rows.CORRECT_FRAME, map_rows.correction_rows(update))
 
     def _guarded(self, work: Callable[[], Result]) -> Result:
@@ -125,11 +126,13 @@ def read_map(connection: sqlite3.Connection) -> MapState:
     progress = run("SELECT * FROM progress").fetchone()
     frames = run("SELECT * FROM frames ORDER BY sequence").fetchall()
     update = map_rows.update_of(connection)
+    dense_points = dense_table.point_counts(connection)
     run("COMMIT")
     if progress is None:
         return state
     _, state.session, sequence, _, _, metric_scale = progress
     state.apply(update)
+    state.count_dense_points(dense_points)
     for row in frames:
         state.add_frame(row[0], map_rows.frame_of(row, bool(metric_scale)))
     state.finish(sequence)

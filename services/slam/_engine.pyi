@@ -67,6 +67,7 @@ class EngineOptions:
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
     wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
+    semi_dense: bool  # False: inverse depths of every keyframe's gradient pixels, in the background
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
     map_from_first_camera: npt.NDArray[np.float64]  # (4, 4), identity

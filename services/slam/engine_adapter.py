@@ -40,8 +40,12 @@ class EngineSettings:
     radial_sigma: float = 0.01
     threads: int = 2
     opencv_threads: int = 1
+<<<<<<< HEAD
     loop_closing: bool = True
     wait_for_loops: bool = True
+=======
+    semi_dense: bool = False
+>>>>>>> dense
     map_id: int = 0
     vocabulary_path: str = str(SHIPPED_VOCABULARY)
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
@@ -198,8 +202,12 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.radial_sigma = settings.radial_sigma
     options.threads = settings.threads
     options.opencv_threads = settings.opencv_threads
+<<<<<<< HEAD
     options.loop_closing = settings.loop_closing
     options.wait_for_loops = settings.wait_for_loops
+=======
+    options.semi_dense = settings.semi_dense
+>>>>>>> dense
     options.map_id = settings.map_id
     options.vocabulary_path = settings.vocabulary_path
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)

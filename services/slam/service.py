@@ -114,8 +114,12 @@ class SlamService(FrameService):
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
             radial_sigma=options.radial_sigma,
+<<<<<<< HEAD
             loop_closing=options.loop_closing,
             wait_for_loops=self._lossless,
+=======
+            semi_dense=options.semi_dense,
+>>>>>>> dense
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )

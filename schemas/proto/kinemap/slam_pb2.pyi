@@ -76,7 +76,7 @@ class TrackedFrame(_message.Message):
     def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., state: _Optional[_Union[TrackingState, str]] = ..., reason: _Optional[str] = ..., map_id: _Optional[int] = ..., map_from_camera: _Optional[_Iterable[float]] = ..., covariance: _Optional[_Iterable[float]] = ..., reference_keyframe_id: _Optional[int] = ..., camera_from_reference: _Optional[_Iterable[float]] = ..., features: _Optional[int] = ..., tracked_landmarks: _Optional[int] = ..., keyframe_inserted: _Optional[bool] = ..., masks: _Optional[_Union[MaskSource, str]] = ..., metric_scale: _Optional[bool] = ..., handling: _Optional[str] = ..., moving_unplaced: _Optional[int] = ..., stage_ms: _Optional[_Iterable[_Union[StageTime, _Mapping]]] = ..., loop_closed: _Optional[bool] = ..., maps_merged: _Optional[bool] = ...) -> None: ...
 
 class MapUpdate(_message.Message):
-    __slots__ = ("version", "timestamp_ns", "map_id", "metric_scale", "keyframe_id", "keyframe_timestamp_ns", "keyframe_map_id", "keyframe_pose", "keyframe_culled", "keyframe_parent_id", "landmark_id", "landmark_anchor_id", "landmark_position", "landmark_state", "landmark_category", "landmark_object_id", "landmark_first_seen_ns", "landmark_last_seen_ns", "landmark_valid_until_ns", "removed_landmark_id", "frame_timestamp_ns", "frame_reference_keyframe_id", "frame_camera_from_reference")
+    __slots__ = ("version", "timestamp_ns", "map_id", "metric_scale", "keyframe_id", "keyframe_timestamp_ns", "keyframe_map_id", "keyframe_pose", "keyframe_culled", "keyframe_parent_id", "landmark_id", "landmark_anchor_id", "landmark_position", "landmark_state", "landmark_category", "landmark_object_id", "landmark_first_seen_ns", "landmark_last_seen_ns", "landmark_valid_until_ns", "removed_landmark_id", "dense_keyframe_id", "dense_keyframe_points", "dense_point_position", "dense_point_depth_sigma", "dense_point_grey", "dense_point_state", "dense_point_category", "dense_point_object_id", "frame_timestamp_ns", "frame_reference_keyframe_id", "frame_camera_from_reference")
     VERSION_FIELD_NUMBER: _ClassVar[int]
     TIMESTAMP_NS_FIELD_NUMBER: _ClassVar[int]
     MAP_ID_FIELD_NUMBER: _ClassVar[int]
@@ -97,6 +97,14 @@ class MapUpdate(_message.Message):
     LANDMARK_LAST_SEEN_NS_FIELD_NUMBER: _ClassVar[int]
     LANDMARK_VALID_UNTIL_NS_FIELD_NUMBER: _ClassVar[int]
     REMOVED_LANDMARK_ID_FIELD_NUMBER: _ClassVar[int]
+    DENSE_KEYFRAME_ID_FIELD_NUMBER: _ClassVar[int]
+    DENSE_KEYFRAME_POINTS_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_POSITION_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_DEPTH_SIGMA_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_GREY_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_STATE_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_CATEGORY_FIELD_NUMBER: _ClassVar[int]
+    DENSE_POINT_OBJECT_ID_FIELD_NUMBER: _ClassVar[int]
     FRAME_TIMESTAMP_NS_FIELD_NUMBER: _ClassVar[int]
     FRAME_REFERENCE_KEYFRAME_ID_FIELD_NUMBER: _ClassVar[int]
     FRAME_CAMERA_FROM_REFERENCE_FIELD_NUMBER: _ClassVar[int]
@@ -120,7 +128,15 @@ class MapUpdate(_message.Message):
     landmark_last_seen_ns: bytes
     landmark_valid_until_ns: bytes
     removed_landmark_id: bytes
+    dense_keyframe_id: bytes
+    dense_keyframe_points: bytes
+    dense_point_position: bytes
+    dense_point_depth_sigma: bytes
+    dense_point_grey: bytes
+    dense_point_state: bytes
+    dense_point_category: bytes
+    dense_point_object_id: bytes
     frame_timestamp_ns: bytes
     frame_reference_keyframe_id: bytes
     frame_camera_from_reference: bytes
-    def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., map_id: _Optional[int] = ..., metric_scale: _Optional[bool] = ..., keyframe_id: _Optional[bytes] = ..., keyframe_timestamp_ns: _Optional[bytes] = ..., keyframe_map_id: _Optional[bytes] = ..., keyframe_pose: _Optional[bytes] = ..., keyframe_culled: _Optional[bytes] = ..., keyframe_parent_id: _Optional[bytes] = ..., landmark_id: _Optional[bytes] = ..., landmark_anchor_id: _Optional[bytes] = ..., landmark_position: _Optional[bytes] = ..., landmark_state: _Optional[bytes] = ..., landmark_category: _Optional[bytes] = ..., landmark_object_id: _Optional[bytes] = ..., landmark_first_seen_ns: _Optional[bytes] = ..., landmark_last_seen_ns: _Optional[bytes] = ..., landmark_valid_until_ns: _Optional[bytes] = ..., removed_landmark_id: _Optional[bytes] = ..., frame_timestamp_ns: _Optional[bytes] = ..., frame_reference_keyframe_id: _Optional[bytes] = ..., frame_camera_from_reference: _Optional[bytes] = ...) -> None: ...
+    def __init__(self, version: _Optional[int] = ..., timestamp_ns: _Optional[int] = ..., map_id: _Optional[int] = ..., metric_scale: _Optional[bool] = ..., keyframe_id: _Optional[bytes] = ..., keyframe_timestamp_ns: _Optional[bytes] = ..., keyframe_map_id: _Optional[bytes] = ..., keyframe_pose: _Optional[bytes] = ..., keyframe_culled: _Optional[bytes] = ..., keyframe_parent_id: _Optional[bytes] = ..., landmark_id: _Optional[bytes] = ..., landmark_anchor_id: _Optional[bytes] = ..., landmark_position: _Optional[bytes] = ..., landmark_state: _Optional[bytes] = ..., landmark_category: _Optional[bytes] = ..., landmark_object_id: _Optional[bytes] = ..., landmark_first_seen_ns: _Optional[bytes] = ..., landmark_last_seen_ns: _Optional[bytes] = ..., landmark_valid_until_ns: _Optional[bytes] = ..., removed_landmark_id: _Optional[bytes] = ..., dense_keyframe_id: _Optional[bytes] = ..., dense_keyframe_points: _Optional[bytes] = ..., dense_point_position: _Optional[bytes] = ..., dense_point_depth_sigma: _Optional[bytes] = ..., dense_point_grey: _Optional[bytes] = ..., dense_point_state: _Optional[bytes] = ..., dense_point_category: _Optional[bytes] = ..., dense_point_object_id: _Optional[bytes] = ..., frame_timestamp_ns: _Optional[bytes] = ..., frame_reference_keyframe_id: _Optional[bytes] = ..., frame_camera_from_reference: _Optional[bytes] = ...) -> None: ...

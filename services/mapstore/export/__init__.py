@@ -8,6 +8,8 @@ from typing import Final
 import numpy as np
 
 from services.mapstore import map_file
+from services.mapstore.dense_table import read_clouds
+from services.mapstore.export.dense_pcd import dense_pcd, dense_points_of
 from services.mapstore.export.kitti import trajectory_kitti
 from services.mapstore.export.pcd import map_pcd
 from services.mapstore.export.tum import keyframes_tum, trajectory_tum
@@ -32,7 +34,8 @@ def export_map(
 ) -> list[Path]:
     """Writes `database` into the folder `out` and returns the files.
 
-    They are trajectory.tum and keyframes.tum (format tum), trajectory.kitti (kitti), map.pcd (pcd).
+    They are trajectory.tum and keyframes.tum (format tum), trajectory.kitti (kitti), map.pcd (pcd) and, of a map that
+    has semi-dense points, map_dense.pcd (pcd).
 
     Maps that were never joined share no frame of reference, so one map is written: `map_id`, or the one with the most
     frames. Raises InputError for a format or a file that is not known, ResourceError when `out` cannot be written.
@@ -48,6 +51,9 @@ def export_map(
         for file, content in _FILES[name].items():
             _write(out / file, content(view, chosen))
             written.append(out / file)
+    if "pcd" in formats and view.dense_points > 0:
+        _write(out / "map_dense.pcd", _dense(database, view, chosen))
+        written.append(out / "map_dense.pcd")
     return written
 
 
@@ -56,6 +62,14 @@ def load_view(database: Path) -> MapView:
     connection = map_file.open_to_read(database)
     try:
         return read_map(connection).view()
+    finally:
+        connection.close()
+
+
+def _dense(database: Path, view: MapView, map_id: int) -> bytes:
+    connection = map_file.open_to_read(database)
+    try:
+        return dense_pcd(dense_points_of(view, read_clouds(connection), map_id), view.metric_scale)
     finally:
         connection.close()
 

@@ -28,6 +28,7 @@ class MapCollector(Collector):
         for state, count in zip(MotionState, view.counts_by_state().tolist(), strict=True):
             landmarks.add_metric([state.name.lower()], count)
         yield landmarks
+        yield GaugeMetricFamily("kinemap_dense_points", "Points of the semi-dense map", value=view.dense_points)
         in_use = int((view.keyframes.culled == 0).sum())
         yield GaugeMetricFamily("kinemap_keyframes", "Keyframes that are not culled", value=in_use)
         yield GaugeMetricFamily("kinemap_frame_sequence", "Newest frame in the map, -1: none", value=view.sequence)

@@ -30,6 +30,9 @@ class SlamConfig(BaseModel):
     new_map_after_lost: int = Field(
         50, ge=1, description="lost frames after which a new map begins; the old one stays in the store"
     )
+    semi_dense: bool = Field(
+        False, description="also map what has a gradient in the images of keyframes: map_dense.pcd"
+    )
     use_stereo: bool = Field(True, description="take the depths of points, and the scale, from the right image if any")
     use_depth: bool = Field(
         True, description="place moving points, and set the scale, by the depth image if there is one"

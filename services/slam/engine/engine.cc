@@ -78,6 +78,7 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       mapper_(MapperOptions(options), camera_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
       loop_closer_(ClosingOptions(options), camera_) {
+  if (options_.semi_dense) semi_dense_.emplace(SemiDenseOptions{}, camera_);
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -95,7 +96,8 @@ void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Ma
   const Stopwatch stopwatch;
   mapper_.StartMapping();
   FrameFeaturesPtr features = extractor_.Extract(image, right, depth_m);
-  begun_ = BegunFrame{timestamp_ns, std::move(features), stopwatch.ElapsedMs()};
+  begun_ =
+      BegunFrame{timestamp_ns, std::move(features), semi_dense_ ? image.clone() : cv::Mat(), stopwatch.ElapsedMs()};
 }
 
 void Engine::FinishMapping() {
@@ -126,6 +128,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
   result.map_id = atlas_.active_map_id();
   result.features = begun_->features->size();
   Frame frame = MakeFrame(objects);
+  const cv::Mat image = begun_->image;
   last_timestamp_ns_ = begun_->timestamp_ns;
   begun_.reset();
   if (map() == nullptr) {
@@ -144,6 +147,14 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, &result);
+  }
+  if (semi_dense_) {
+    semi_dense_->Collect(frame_index_);
+    if (result.keyframe_inserted) {
+      PixelLabels labels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh,
+                         options_.mask_border_px);
+      semi_dense_->Add(*map(), frame.reference_keyframe_id, image, std::move(labels), frame_index_);
+    }
   }
   result.metric_scale = map() != nullptr && map()->metric_scale();
   return result;
@@ -304,6 +315,7 @@ void Engine::Flush() {
   mapper_.Settle(map());
   loop_closer_.Settle(&atlas_);
   mapper_.Finish(map());
+  if (semi_dense_) semi_dense_->Finish(*map());
 }
 
 MapUpdate Engine::TakeUpdate() {
@@ -312,6 +324,7 @@ MapUpdate Engine::TakeUpdate() {
   // Only what has begun is waited for.
   mapper_.WaitForMapping();
   MapUpdate update = TakeMapUpdate(map(), late_frames);
+  if (semi_dense_) AddSemiDense(semi_dense_->TakeFinished(), &update);
   mapper_.StartMapping();
   return update;
 }

@@ -15,6 +15,7 @@
 #include "mapping/late_metric_scale.h"
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
+#include "semi_dense/semi_dense_mapper.h"
 #include "tracking/camera_tracker.h"
 #include "tracking/initial_map_builder.h"
 #include "tracking/keyframe_policy.h"
@@ -93,10 +94,12 @@ class Engine {
   ObjectStates object_states_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;
+  std::optional<SemiDenseMapper> semi_dense_;
 
   struct BegunFrame {
     int64_t timestamp_ns;
     FrameFeaturesPtr features;
+    cv::Mat image;  // a copy, kept for the semi-dense map only
     double extract_ms;
   };
   std::optional<BegunFrame> begun_;

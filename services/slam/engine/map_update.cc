@@ -38,6 +38,21 @@ PoseArray ToPoseArray(const RigidTransform& transform) {
   return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
+void AddSemiDense(const std::vector<SemiDenseCloud>& clouds, MapUpdate* update) {
+  for (const SemiDenseCloud& cloud : clouds) {
+    update->dense_keyframe_id.push_back(cloud.keyframe_id);
+    update->dense_keyframe_points.push_back(static_cast<int32_t>(cloud.points.size()));
+    for (const SemiDensePoint& point : cloud.points) {
+      update->dense_point_position.push_back(point.position);
+      update->dense_point_depth_sigma.push_back(point.depth_sigma);
+      update->dense_point_grey.push_back(point.grey);
+      update->dense_point_state.push_back(static_cast<uint8_t>(point.state));
+      update->dense_point_category.push_back(point.category);
+      update->dense_point_object_id.push_back(point.object_id);
+    }
+  }
+}
+
 MapUpdate TakeMapUpdate(SlamMap* map, const std::vector<LateFramePose>& late_frames) {
   MapUpdate update;
   for (const LateFramePose& frame : late_frames) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "map/slam_map.h"
+#include "semi_dense/semi_dense_cloud.h"
 
 namespace kinemap {
 
@@ -42,10 +43,22 @@ struct MapUpdate {
   std::vector<int64_t> landmark_valid_until_ns;
   std::vector<LandmarkId> removed_landmark_id;
 
+  // Semi-dense maps that were finished. A keyframe's points are `dense_keyframe_points` rows of what follows.
+  std::vector<KeyframeId> dense_keyframe_id;
+  std::vector<int32_t> dense_keyframe_points;
+  std::vector<std::array<float, 3>> dense_point_position;  ///< in the keyframe's camera frame
+  std::vector<float> dense_point_depth_sigma;
+  std::vector<uint8_t> dense_point_grey;
+  std::vector<uint8_t> dense_point_state;
+  std::vector<int16_t> dense_point_category;
+  std::vector<uint32_t> dense_point_object_id;
+
   std::vector<int64_t> frame_timestamp_ns;
   std::vector<KeyframeId> frame_reference_keyframe_id;
   std::vector<PoseArray> frame_camera_from_reference;
 };
+
+void AddSemiDense(const std::vector<SemiDenseCloud>& clouds, MapUpdate* update);
 
 /// Takes the changes out of the map (null: none) and adds the late frame poses.
 MapUpdate TakeMapUpdate(SlamMap* map, const std::vector<LateFramePose>& late_frames);

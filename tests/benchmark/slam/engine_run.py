@@ -4,7 +4,9 @@
 import hashlib
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +16,7 @@ from services.slam import _engine
 from tests.benchmark.slam.sequence_part import SequenceFrame, SequencePart
 
 Array = npt.NDArray[np.float64]
+Update = dict[str, npt.NDArray[Any]]
 
 TRACKING = 1
 FRAME_NS = 100_000_000
@@ -35,6 +38,8 @@ class EngineRun:
     results: list[_engine.TrackingResult] = field(default_factory=list)
     wall_ms: list[float] = field(default_factory=list)
     digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
+    on_update: Callable[[Update], None] | None = None
+    """gets every map update, for what is not kept here"""
 
     def step(self, frame: SequenceFrame) -> None:
         """Track the next frame."""
@@ -88,6 +93,8 @@ class EngineRun:
 
     def _take(self) -> None:
         update = self.engine.take_map_update()
+        if self.on_update is not None:
+            self.on_update(update)
         for name in sorted(update):
             self.digest.update(update[name].tobytes())
         for row, number in enumerate(update["keyframe_id"].tolist()):
@@ -105,7 +112,11 @@ class EngineRun:
             self.relative[timestamp_ns // FRAME_NS - 1] = (reference, pose)
 
 
-def run_parts(parts: tuple[SequencePart, ...], options: _engine.EngineOptions) -> EngineRun:
+def run_parts(
+    parts: tuple[SequencePart, ...],
+    options: _engine.EngineOptions,
+    on_update: Callable[[Update], None] | None = None,
+) -> EngineRun:
     """Show the engine one part after the other, as one input; the camera is the first part's."""
     run: EngineRun | None = None
     for part in parts:
@@ -113,7 +124,7 @@ def run_parts(parts: tuple[SequencePart, ...], options: _engine.EngineOptions) -
             if run is None:
                 height, width = frame.image.shape
                 camera = _engine.CameraModel(width, height, *part.intrinsics(), [], part.baseline_m())
-                run = EngineRun(_engine.Engine(camera, options))
+                run = EngineRun(_engine.Engine(camera, options), on_update=on_update)
             run.step(frame)
     if run is None:
         raise FileNotFoundError(f"{parts[0].folder}: no frame from number {parts[0].start} on")

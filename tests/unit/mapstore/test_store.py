@@ -150,7 +150,7 @@ def test_a_map_of_a_newer_version_is_refused(tmp_path: Path) -> None:
         connection.execute(f"PRAGMA user_version = {map_file.SCHEMA_VERSION + 6}")
     for opening in (lambda path: MapStore(path, "drive"), load_view):
         with pytest.raises(
-            InputError, match=r"map\.sqlite: map version 7, expected at most 1; a newer kinemap wrote it"
+            InputError, match=r"map\.sqlite: map version 8, expected at most 2; a newer kinemap wrote it"
         ):
             opening(tmp_path / "map.sqlite")
 

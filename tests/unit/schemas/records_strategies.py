@@ -43,10 +43,13 @@ def map_updates(draw: st.DrawFn) -> r.MapUpdate:
     from schemas.codec.slam import _ARRAYS
 
     rows = {prefix: draw(st.integers(0, 5)) for prefix in ("keyframe", "landmark", "frame", "removed")}
-    drawn = {
-        name: draw(arrays(dtype.lstrip("<"), (rows[name.split("_")[0]], *columns)))
-        for name, (dtype, columns) in _ARRAYS.items()
-    }
+    points = draw(st.lists(st.integers(0, 5), max_size=3))
+    rows |= {"dense_keyframe": len(points), "dense_point": sum(points)}
+    drawn = {}
+    for name, (dtype, columns) in _ARRAYS.items():
+        (count,) = (number for prefix, number in rows.items() if name.startswith(f"{prefix}_"))
+        drawn[name] = draw(arrays(dtype.lstrip("<"), (count, *columns)))
+    drawn["dense_keyframe_points"] = np.array(points, np.int32)
     return r.MapUpdate(draw(TIMES), draw(st.integers(0, 9)), draw(st.booleans()), **drawn)
 
 

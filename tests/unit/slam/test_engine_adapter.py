@@ -272,3 +272,36 @@ def test_without_a_vocabulary_or_with_loop_closing_off_the_engine_runs() -> None
     for settings in (EngineSettings(vocabulary_path=""), EngineSettings(loop_closing=False)):
         tracked, _ = drive(SlamEngine(calibration(room), settings), room, 8)
         assert tracked[-1].state is TrackingState.TRACKING
+
+
+def test_semi_dense_points_lie_on_the_walls_and_keep_off_what_moves() -> None:
+    room = TexturedRoom(seed=3)
+    engine = SlamEngine(calibration(room), EngineSettings(semi_dense=True))
+    _, updates = drive(engine, room, 24, MotionState.MOVING, with_depth=True)
+    frame_of = {
+        int(number): int(time_ns) // FRAME_NS - 1
+        for update in updates
+        for number, time_ns in zip(update.keyframe_id, update.keyframe_timestamp_ns, strict=True)
+    }
+    landmarks = len(landmark_states(updates))
+    errors, points = [], 0
+    for update in updates:
+        start = 0
+        for number, count in zip(update.dense_keyframe_id, update.dense_keyframe_points, strict=True):
+            position = update.dense_point_position[start : start + count].astype(np.float64)
+            start += count
+            pixels = position @ room.intrinsics.T
+            column, row = np.rint(pixels[:, :2] / pixels[:, 2:]).astype(int).T
+            assert not ((row >= 60) & (row < 180) & (column >= 40) & (column < 200)).any()
+            true_m = room.render(frame_of[int(number)])[1][row, column]
+            errors.append(position[:, 2] / true_m - 1)
+            points += count
+        assert start == len(update.dense_point_grey)
+    assert points > 5 * landmarks
+    assert np.median(np.abs(np.concatenate(errors))) < 0.03
+
+
+def test_without_the_option_there_are_no_semi_dense_points() -> None:
+    room = TexturedRoom(seed=3)
+    _, updates = drive(SlamEngine(calibration(room)), room, 8)
+    assert sum(len(update.dense_keyframe_id) for update in updates) == 0

@@ -17,6 +17,7 @@ BELOW = {
     "tracking": {"geometry", "features", "map", "optimization"},
     "mapping": {"geometry", "features", "map", "optimization"},
     "loop_closing": {"geometry", "features", "map", "optimization"},
+    "semi_dense": {"geometry", "features", "map"},
 }
 
 

@@ -78,6 +78,14 @@ py::dict ToDict(const MapUpdate& update) {
   columns["landmark_last_seen_ns"] = ToArray(update.landmark_last_seen_ns);
   columns["landmark_valid_until_ns"] = ToArray(update.landmark_valid_until_ns);
   columns["removed_landmark_id"] = ToArray(update.removed_landmark_id);
+  columns["dense_keyframe_id"] = ToArray(update.dense_keyframe_id);
+  columns["dense_keyframe_points"] = ToArray(update.dense_keyframe_points);
+  columns["dense_point_position"] = ToArray(update.dense_point_position);
+  columns["dense_point_depth_sigma"] = ToArray(update.dense_point_depth_sigma);
+  columns["dense_point_grey"] = ToArray(update.dense_point_grey);
+  columns["dense_point_state"] = ToArray(update.dense_point_state);
+  columns["dense_point_category"] = ToArray(update.dense_point_category);
+  columns["dense_point_object_id"] = ToArray(update.dense_point_object_id);
   columns["frame_timestamp_ns"] = ToArray(update.frame_timestamp_ns);
   columns["frame_reference_keyframe_id"] = ToArray(update.frame_reference_keyframe_id);
   columns["frame_camera_from_reference"] = ToArray(update.frame_camera_from_reference);

@@ -107,6 +107,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
       .def_readwrite("wait_for_loops", &EngineOptions::wait_for_loops)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
+      .def_readwrite("semi_dense", &EngineOptions::semi_dense)
       .def_readwrite("map_id", &EngineOptions::map_id)
       .def_readwrite("vocabulary_path", &EngineOptions::vocabulary_path)
       .def_readwrite("map_from_first_camera", &EngineOptions::map_from_first_camera);

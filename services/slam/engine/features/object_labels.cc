@@ -7,7 +7,7 @@
 namespace kinemap {
 namespace {
 
-FeatureLabel LabelOfObject(Stage stage, MotionState state, bool masks_fresh) {
+FeatureLabel LabelInState(Stage stage, MotionState state, bool masks_fresh) {
   FeatureLabel label;
   if (stage == Stage::kDynamic) {
     label.role = FeatureRole::kMapped;
@@ -35,10 +35,10 @@ ObjectLabels::ObjectLabels(Stage stage, const cv::Mat& track_image, const std::v
                            bool masks_fresh, int border_px)
     : stage_(stage),
       track_image_(track_image),
-      unlisted_(LabelOfObject(stage, MotionState::kUndecided, masks_fresh)),
+      unlisted_(LabelInState(stage, MotionState::kUndecided, masks_fresh)),
       border_px_(border_px) {
   for (const ObjectRow& row : rows) {
-    FeatureLabel label = LabelOfObject(stage, row.state, masks_fresh);
+    FeatureLabel label = LabelInState(stage, row.state, masks_fresh);
     label.object_id = row.id;
     label.category = row.category;
     label_of_object_[row.id] = label;
@@ -61,17 +61,20 @@ bool ObjectLabels::IsBorder(int column, int row, uint32_t object_id) const {
   return false;
 }
 
+FeatureLabel ObjectLabels::LabelOfObject(uint32_t object_id) const {
+  if (stage_ == Stage::kBase || object_id == 0) return {};
+  const auto known = label_of_object_.find(object_id);
+  FeatureLabel label = known != label_of_object_.end() ? known->second : unlisted_;
+  label.object_id = object_id;
+  return label;
+}
+
 FeatureLabel ObjectLabels::LabelOf(const Keypoint& keypoint) const {
   if (stage_ == Stage::kBase || track_image_.empty()) return {};
   const int column = std::clamp(static_cast<int>(std::lround(keypoint.raw_px.x())), 0, track_image_.cols - 1);
   const int row = std::clamp(static_cast<int>(std::lround(keypoint.raw_px.y())), 0, track_image_.rows - 1);
   const uint32_t object_id = ObjectAt(column, row);
-  FeatureLabel label;
-  if (object_id != 0) {
-    const auto known = label_of_object_.find(object_id);
-    label = known != label_of_object_.end() ? known->second : unlisted_;
-    label.object_id = object_id;
-  }
+  FeatureLabel label = LabelOfObject(object_id);
   if (IsBorder(column, row, object_id)) label.role = FeatureRole::kIgnored;
   return label;
 }

@@ -46,6 +46,8 @@ class ObjectLabels {
                int border_px);
 
   FeatureLabel LabelOf(const Keypoint& keypoint) const;
+  /// Of what shows an object, away from its border; id 0: background.
+  FeatureLabel LabelOfObject(uint32_t object_id) const;
   std::vector<FeatureLabel> LabelsOf(const std::vector<Keypoint>& keypoints) const;
 
  private:
