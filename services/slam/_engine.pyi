@@ -57,6 +57,7 @@ class EngineOptions:
     threads: int  # 2, of feature extraction; results are the same with any number
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
+    camera_height_m: float  # 0: unknown; else above the road, metres: one camera's map becomes metric by it
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     map_id: int  # 0; ids start at map_id << 32
     vocabulary_path: str  # "": places are not recognised, but for those nearby
@@ -96,6 +97,15 @@ class TrackingResult:
     @property
     def moving_unplaced(self) -> int:
         """Features on moving objects for which this keyframe had no depth."""
+    @property
+    def road_normal(self) -> npt.NDArray[np.float64]:
+        """(3,) from the camera down to the road, camera frame; 0 where no road is known."""
+    @property
+    def road_distance(self) -> float:
+        """Of the camera above the road, map units."""
+    @property
+    def object_contacts(self) -> dict[int, npt.NDArray[np.float64]]:
+        """Where objects stand on the road: left end, nearest point, right end (3, 3), camera frame, map units."""
     @property
     def metric_scale(self) -> bool:
         """Whether map units are metres."""

@@ -13,11 +13,13 @@ import numpy.typing as npt
 from schemas.categories import category_id
 from schemas.codec.rigid import matrix_from_pose, pose_from_matrix
 from schemas.records.camera import CameraCalibration, DepthImage, Image
+from schemas.records.mapped_objects import MappedObjects
 from schemas.records.objects import Objects
 from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
 from services.runtime.errors import InputError
 from services.slam import _engine
 from services.slam.depth_scale import DepthScale
+from services.slam.object_mapper import ObjectMapper
 from services.slam.vocabulary import SHIPPED_VOCABULARY
 
 Stage = Literal["base", "dynamic", "moving"]
@@ -39,6 +41,7 @@ class EngineSettings:
     local_bundle_keyframes: int = 15
     radial_sigma: float = 0.01
     threads: int = 2
+    camera_height_m: float = 0.0
     opencv_threads: int = 1
     map_id: int = 0
     vocabulary_path: str = str(SHIPPED_VOCABULARY)
@@ -66,6 +69,8 @@ class SlamEngine:
         self._metric_scale = False
         self._depth_scale = DepthScale(calibration, self._settings.map_from_first_camera[:3])
         self._depth: DepthImage | None = None
+        self._object_mapper = ObjectMapper(calibration)
+        self._mapped_objects = MappedObjects(0)
         self._measured: tuple[npt.NDArray[np.float64], DepthImage] | None = None
         with _input_errors():
             self._engine = _engine.Engine(_camera_model(calibration, right), _engine_options(self._settings))
@@ -106,7 +111,15 @@ class SlamEngine:
         if depth is not None and in_units.keyframe_inserted and in_units.map_from_camera is not None:
             self._measured = (in_units.map_from_camera, depth)
         self._metric_scale = result.metric_scale
-        return in_units if result.metric_scale else self._depth_scale.frame(in_units)
+        frame = in_units if result.metric_scale else self._depth_scale.frame(in_units)
+        contacts, road_distance_m = result.object_contacts, result.road_distance
+        self._mapped_objects = self._object_mapper.look(frame, objects, depth, contacts, road_distance_m)
+        return frame
+
+    @property
+    def mapped_objects(self) -> MappedObjects:
+        """The objects of the frame finished last, in the map."""
+        return self._mapped_objects
 
     def flush(self) -> None:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
@@ -207,6 +220,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.local_bundle_keyframes = settings.local_bundle_keyframes
     options.radial_sigma = settings.radial_sigma
     options.threads = settings.threads
+    options.camera_height_m = settings.camera_height_m
     options.opencv_threads = settings.opencv_threads
     options.map_id = settings.map_id
     options.vocabulary_path = settings.vocabulary_path

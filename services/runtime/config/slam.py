@@ -24,6 +24,13 @@ class SlamConfig(BaseModel):
     radial_sigma: float = Field(
         0.01, ge=0, description="radial distortion the calibration may have left, found at the end; 0: it is exact"
     )
+    camera_height_m: float | None = Field(
+        None,
+        gt=0.0,
+        le=100.0,
+        description="of the camera above the road: one camera's map becomes metric by it; unknown: its scale stays "
+        "arbitrary, unless depth tells",
+    )
     new_map_after_lost: int = Field(
         50, ge=1, description="lost frames after which a new map begins; the old one stays in the store"
     )
