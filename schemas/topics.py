@@ -18,6 +18,7 @@ from schemas.proto.kinemap import (
     control_pb2,
     density_pb2,
     instances_pb2,
+    mapped_objects_pb2,
     motion_pb2,
     objects_pb2,
     slam_pb2,
@@ -74,6 +75,16 @@ OBJECTS = _frame_topic("tracker/objects", objects_pb2.Objects, "tracker", "slam"
 TRACKED_FRAME = _frame_topic("slam/tracked_frame", slam_pb2.TrackedFrame, "slam", "mapstore", "cli", depth=64)
 MAP_UPDATE = _frame_topic("slam/map_update", slam_pb2.MapUpdate, "slam", "mapstore", depth=64)
 DENSITY = _frame_topic("mapstore/density", density_pb2.Density, "mapstore", "cli")
+MAPPED_OBJECTS = Topic(
+    "slam/objects",
+    mapped_objects_pb2.MappedObjects,
+    "slam",
+    ("recorder",),
+    False,
+    True,
+    1,
+    WhenFull.DROP_OLDEST,
+)
 POSE = Topic("slam/pose", PoseInFrame, "slam", ("recorder",), False, True, 1, WhenFull.DROP_OLDEST)
 END = Topic(
     "camera/end",
@@ -105,6 +116,7 @@ TOPICS: tuple[Topic, ...] = (
     TRACKED_FRAME,
     MAP_UPDATE,
     DENSITY,
+    MAPPED_OBJECTS,
     POSE,
     END,
     ANSWER,

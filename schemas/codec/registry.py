@@ -36,6 +36,7 @@ _CODECS: dict[Topic, Codec] = {
     topics.OBJECTS: Codec(objects.objects_to_message, objects.objects_to_record),
     topics.TRACKED_FRAME: Codec(slam.tracked_frame_to_message, slam.tracked_frame_to_record),
     topics.MAP_UPDATE: Codec(slam.map_update_to_message, slam.map_update_to_record),
+    topics.MAPPED_OBJECTS: Codec(objects.mapped_objects_to_message, objects.mapped_objects_to_record),
     topics.POSE: Codec(slam.pose_to_message, slam.pose_to_record),
     topics.DENSITY: Codec(slam.density_to_message, slam.density_to_record),
     topics.ANSWER: Codec(control.answer_to_message, control.answer_to_record),

@@ -14,6 +14,7 @@ from schemas.records.camera import (
 from schemas.records.control import FrameAnswer, Heartbeat
 from schemas.records.density import Density, DensityLevel
 from schemas.records.instances import Instance, Instances
+from schemas.records.mapped_objects import MappedObject, MappedObjects
 from schemas.records.motion import EgoMotion, InstanceMotion, InstanceMotions, MovingMask
 from schemas.records.objects import MotionState, Objects, ObjectTrack
 from schemas.records.slam import MapUpdate, MaskSource, PoseInMap, TrackedFrame, TrackingState
@@ -34,6 +35,8 @@ __all__ = [
     "InstanceMotions",
     "Instances",
     "MapUpdate",
+    "MappedObject",
+    "MappedObjects",
     "MaskSource",
     "MotionState",
     "MovingMask",

@@ -66,6 +66,7 @@ class EngineOptions:
     right_shift_sigma_px: float  # 0.1: the same of the right image's columns, found with it; 0: the pair is exact
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
     wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
+    camera_height_m: float  # 0: unknown; else above the road, metres: one camera's map becomes metric by it
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     semi_dense: bool  # False: inverse depths of every keyframe's gradient pixels, in the background
     map_id: int  # 0; ids start at map_id << 32
@@ -106,6 +107,15 @@ class TrackingResult:
     @property
     def moving_unplaced(self) -> int:
         """Features on moving objects for which this keyframe had no depth."""
+    @property
+    def road_normal(self) -> npt.NDArray[np.float64]:
+        """(3,) from the camera down to the road, camera frame; 0 where no road is known."""
+    @property
+    def road_distance(self) -> float:
+        """Of the camera above the road, map units."""
+    @property
+    def object_contacts(self) -> dict[int, npt.NDArray[np.float64]]:
+        """Where objects stand on the road: left end, nearest point, right end (3, 3), camera frame, map units."""
     @property
     def metric_scale(self) -> bool:
         """Whether map units are metres."""

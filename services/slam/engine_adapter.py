@@ -13,10 +13,12 @@ import numpy.typing as npt
 from schemas.categories import category_id
 from schemas.codec.rigid import matrix_from_pose, pose_from_matrix
 from schemas.records.camera import CameraCalibration, DepthImage, Image
+from schemas.records.mapped_objects import MappedObjects
 from schemas.records.objects import Objects
 from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
 from services.runtime.errors import InputError
 from services.slam import _engine
+from services.slam.object_mapper import ObjectMapper
 from services.slam.vocabulary import SHIPPED_VOCABULARY
 
 Stage = Literal["base", "dynamic", "moving"]
@@ -39,13 +41,11 @@ class EngineSettings:
     local_bundle_keyframes: int = 15
     radial_sigma: float = 0.01
     threads: int = 2
+    camera_height_m: float = 0.0
     opencv_threads: int = 1
-<<<<<<< HEAD
     loop_closing: bool = True
     wait_for_loops: bool = True
-=======
     semi_dense: bool = False
->>>>>>> dense
     map_id: int = 0
     vocabulary_path: str = str(SHIPPED_VOCABULARY)
     map_from_first_camera: npt.NDArray[np.float64] = field(default_factory=lambda: np.array(_OPTICAL_IN_REP103))
@@ -70,6 +70,9 @@ class SlamEngine:
         """
         self._settings = settings or EngineSettings()
         self._metric_scale = False
+        self._depth: DepthImage | None = None
+        self._object_mapper = ObjectMapper(calibration)
+        self._mapped_objects = MappedObjects(0)
         with _input_errors():
             self._engine = _engine.Engine(_camera_model(calibration, right), _engine_options(self._settings))
 
@@ -104,7 +107,15 @@ class SlamEngine:
                 masks is MaskSource.FRESH,
             )
         self._metric_scale = result.metric_scale
-        return self._tracked_frame(result, masks)
+        frame = self._tracked_frame(result, masks)
+        contacts, road_distance_m = result.object_contacts, result.road_distance
+        self._mapped_objects = self._object_mapper.look(frame, objects, self._depth, contacts, road_distance_m)
+        return frame
+
+    @property
+    def mapped_objects(self) -> MappedObjects:
+        """The objects of the frame finished last, in the map."""
+        return self._mapped_objects
 
     def flush(self) -> None:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
@@ -201,13 +212,11 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.local_bundle_keyframes = settings.local_bundle_keyframes
     options.radial_sigma = settings.radial_sigma
     options.threads = settings.threads
+    options.camera_height_m = settings.camera_height_m
     options.opencv_threads = settings.opencv_threads
-<<<<<<< HEAD
     options.loop_closing = settings.loop_closing
     options.wait_for_loops = settings.wait_for_loops
-=======
     options.semi_dense = settings.semi_dense
->>>>>>> dense
     options.map_id = settings.map_id
     options.vocabulary_path = settings.vocabulary_path
     options.map_from_first_camera = matrix_from_pose(settings.map_from_first_camera)

@@ -74,6 +74,8 @@ class SlamService(FrameService):
             self._begin_new_map(engine)
         update = engine.take_map_update(bundle.timestamp_ns)
         outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
+        if engine.mapped_objects.objects:
+            outgoing.append(Outgoing(topics.MAPPED_OBJECTS, engine.mapped_objects))
         if frame.map_from_camera is not None:
             outgoing.append(Outgoing(topics.POSE, self._base_pose(frame)))
         return outgoing
@@ -114,12 +116,10 @@ class SlamService(FrameService):
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
             radial_sigma=options.radial_sigma,
-<<<<<<< HEAD
             loop_closing=options.loop_closing,
             wait_for_loops=self._lossless,
-=======
             semi_dense=options.semi_dense,
->>>>>>> dense
+            camera_height_m=options.camera_height_m or 0.0,
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )

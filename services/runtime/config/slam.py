@@ -27,6 +27,13 @@ class SlamConfig(BaseModel):
     loop_closing: bool = Field(
         True, description="recognise places seen before: take back the drift since, and join maps"
     )
+    camera_height_m: float | None = Field(
+        None,
+        gt=0.0,
+        le=100.0,
+        description="of the camera above the road: one camera's map becomes metric by it; unknown: its scale stays "
+        "arbitrary, unless depth tells",
+    )
     new_map_after_lost: int = Field(
         50, ge=1, description="lost frames after which a new map begins; the old one stays in the store"
     )

@@ -15,6 +15,7 @@ namespace {
 
 constexpr size_t kMostWaitingFrames = 60;
 constexpr int kLeastFilledInliers = 30;
+constexpr double kLeastDown = 0.7;
 
 class Stopwatch {
  public:
@@ -53,6 +54,12 @@ LoopCloserOptions ClosingOptions(const EngineOptions& options) {
   return closer;
 }
 
+// The road's direction below a camera in a map with z up; straight below a level camera where z is not up.
+Eigen::Vector3d RoadNormal(const Eigen::Matrix4d& map_from_first_camera) {
+  const Eigen::Vector3d down = -map_from_first_camera.row(2).head<3>().transpose();
+  return down.y() > kLeastDown ? down.normalized() : Eigen::Vector3d::UnitY();
+}
+
 void CheckSize(const char* name, const cv::Mat& image, const CameraModel& camera) {
   if (image.cols == camera.width_px() && image.rows == camera.height_px()) return;
   throw std::invalid_argument(std::string(name) + ": expected " + std::to_string(camera.width_px()) + "x" +
@@ -76,9 +83,13 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       keyframe_policy_({}),
       atlas_(options.map_id, scales_),
       mapper_(MapperOptions(options), camera_),
+      contact_placer_(camera_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
       loop_closer_(ClosingOptions(options), camera_) {
   if (options_.semi_dense) semi_dense_.emplace(SemiDenseOptions{}, camera_);
+  if (options.camera_height_m > 0) {
+    ground_scale_.emplace(camera_, options.camera_height_m, RoadNormal(options.map_from_first_camera));
+  }
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
 }
 
@@ -96,8 +107,10 @@ void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Ma
   const Stopwatch stopwatch;
   mapper_.StartMapping();
   FrameFeaturesPtr features = extractor_.Extract(image, right, depth_m);
-  begun_ =
-      BegunFrame{timestamp_ns, std::move(features), semi_dense_ ? image.clone() : cv::Mat(), stopwatch.ElapsedMs()};
+  RoadView road;
+  if (ground_scale_ && right.empty() && depth_m.empty()) road = ground_scale_->viewer().Make(image);
+  begun_ = BegunFrame{timestamp_ns, std::move(features), semi_dense_ ? image.clone() : cv::Mat(), stopwatch.ElapsedMs(),
+                      std::move(road)};
 }
 
 void Engine::FinishMapping() {
@@ -130,6 +143,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
   Frame frame = MakeFrame(objects);
   const cv::Mat image = begun_->image;
   last_timestamp_ns_ = begun_->timestamp_ns;
+  RoadView road = std::move(begun_->road);
   begun_.reset();
   if (map() == nullptr) {
     Initialize(&frame, &result);
@@ -139,6 +153,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
     FinishMapping();
     mapper_.MergeIfDue(map(), frame_index_);
     MakeMetricIfFound();
+    if (ground_scale_ && mapper_.IsFree() && loop_closer_.IsFree()) ground_scale_->Correct(map());
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     MergeLoops(&result);
     places_.Follow(map());
@@ -147,6 +162,11 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, &result);
+    if (!road.intensity.empty() && result.state == TrackingState::kTracking) {
+      if (!objects.track_image.empty()) ground_scale_->viewer().LeaveOutObjects(objects.track_image, &road);
+      ground_scale_->Observe(*map(), frame, std::move(road));
+      ReportRoad(frame, objects.track_image, &result);
+    }
   }
   if (semi_dense_) {
     semi_dense_->Collect(frame_index_);
@@ -300,6 +320,19 @@ void Engine::CountClose(const Frame& frame, TrackingQuality* quality) const {
   }
 }
 
+void Engine::ReportRoad(const Frame& frame, const cv::Mat& track_image, TrackingResult* result) {
+  const std::optional<GroundPlane>& plane = ground_scale_->plane();
+  if (!plane) return;
+  result->road_normal = plane->normal;
+  result->road_distance = plane->height;
+  if (track_image.empty()) return;
+  const ObjectContacts contacts(track_image, camera_, *plane);
+  result->object_contacts = contacts.All();
+  if (result->keyframe_inserted) {
+    result->moving_unplaced -= contact_placer_.Place(map(), frame.reference_keyframe_id, frame, contacts);
+  }
+}
+
 void Engine::ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const {
   result->map_from_camera = frame.camera_from_map.Inverse().Matrix();
   result->reference_keyframe_id = frame.reference_keyframe_id;
@@ -315,6 +348,7 @@ void Engine::Flush() {
   mapper_.Settle(map());
   loop_closer_.Settle(&atlas_);
   mapper_.Finish(map());
+  if (ground_scale_) ground_scale_->Finish(map());
   if (semi_dense_) semi_dense_->Finish(*map());
 }
 

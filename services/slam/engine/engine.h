@@ -8,6 +8,8 @@
 
 #include "engine_options.h"
 #include "features/rig_extractor.h"
+#include "ground/contact_placer.h"
+#include "ground/ground_scale.h"
 #include "loop_closing/loop_closer.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
@@ -76,6 +78,7 @@ class Engine {
   void LookForLoops(KeyframeId mapped, TrackingResult* result);
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void CountClose(const Frame& frame, TrackingQuality* quality) const;
+  void ReportRoad(const Frame& frame, const cv::Mat& track_image, TrackingResult* result);
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
   bool has_right_camera_;
@@ -91,16 +94,19 @@ class Engine {
   Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
   LateMetricScale late_scale_;
+  ContactPlacer contact_placer_;
   ObjectStates object_states_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;
   std::optional<SemiDenseMapper> semi_dense_;
+  std::optional<GroundScale> ground_scale_;  // with one camera of known height
 
   struct BegunFrame {
     int64_t timestamp_ns;
     FrameFeaturesPtr features;
     cv::Mat image;  // a copy, kept for the semi-dense map only
     double extract_ms;
+    RoadView road;  ///< empty without a known camera height
   };
   std::optional<BegunFrame> begun_;
   std::optional<int64_t> last_timestamp_ns_;

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "geometry/rigid_transform.h"
+#include "ground/object_contacts.h"
 #include "map/ids.h"
 
 namespace kinemap {
@@ -38,6 +40,9 @@ struct TrackingResult {
   int features = 0;
   bool keyframe_inserted = false;
   int moving_unplaced = 0;  ///< features on moving objects that this keyframe had no depth for
+  Eigen::Vector3d road_normal = Eigen::Vector3d::Zero();  ///< down, camera frame; 0 where no road is known
+  double road_distance = 0;                               ///< of the camera from the road, map units
+  std::vector<ObjectContact> object_contacts;             ///< camera frame, map units
   bool metric_scale = false;
   bool loop_closed = false;  ///< a place of this map was recognised; many keyframes moved
   bool maps_merged = false;  ///< a place of another map was recognised; map_id may have changed

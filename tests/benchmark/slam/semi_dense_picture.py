@@ -51,8 +51,8 @@ def cloud_picture(clouds: SemiDenseClouds, scale: float, width: int = 1280) -> I
         (first - 2 * ahead, first + 20 * ahead, 400, 720.0),
         (middle + height * up + 0.01 * height * ahead, middle, 900, 900.0),
     ]
-    size_of = [_render(positions[low], colours[low], eye, at, (width, rows), focal) for eye, at, rows, focal in views]
-    return np.vstack(size_of)
+    cloud = (positions[low], colours[low])
+    return np.vstack([_render(cloud, eye, at, (width, rows), focal) for eye, at, rows, focal in views])
 
 
 def _points_in_map(clouds: SemiDenseClouds, scale: float) -> tuple[Floats, npt.NDArray[np.uint8], npt.NDArray[np.intp]]:
@@ -65,9 +65,8 @@ def _points_in_map(clouds: SemiDenseClouds, scale: float) -> tuple[Floats, npt.N
     return np.concatenate(positions) * scale, greys, np.concatenate([cloud["state"] for _, cloud in parts]).astype(int)
 
 
-def _render(
-    positions: Floats, colours: Image, eye: Floats, at: Floats, size: tuple[int, int], focal_px: float
-) -> Image:
+def _render(cloud: tuple[Floats, Image], eye: Floats, at: Floats, size: tuple[int, int], focal_px: float) -> Image:
+    positions, colours = cloud
     forward = (at - eye) / np.linalg.norm(at - eye)
     right = np.cross([0.0, 1.0, 0.0], forward)
     right /= np.linalg.norm(right)

@@ -92,6 +92,19 @@ IMAGES = st.builds(r.Image, TIMES, arrays("u1", SHAPES) | arrays("u1", (3, 4, 3)
 OBJECT_TRACKS = st.builds(
     r.ObjectTrack, IDS, WORDS, SINGLES, st.sampled_from(r.MotionState), NUMBERS, BOXES, st.integers(0, 9999)
 )
+MAPPED_OBJECTS = st.builds(
+    r.MappedObject,
+    IDS,
+    WORDS,
+    st.sampled_from(r.MotionState),
+    TRIPLES,
+    TRIPLES,
+    NUMBERS,
+    TRIPLES,
+    NUMBERS,
+    NUMBERS,
+    st.booleans(),
+)
 INSTANCES = st.builds(r.Instance, IDS, WORDS, SINGLES, BOXES)
 TRUE_OBJECTS = st.builds(r.TrueObject, IDS, WORDS, st.booleans(), TRIPLES, TRIPLES, BOXES, NUMBERS, st.none() | TRIPLES)
 INSTANCE_MOTIONS = st.builds(
@@ -112,6 +125,9 @@ RECORDS: dict[Topic, st.SearchStrategy[Any]] = {
     ),
     topics.CALIBRATION: _calibrations(),
     topics.CALIBRATION_RIGHT: _calibrations(),
+    topics.MAPPED_OBJECTS: st.builds(
+        r.MappedObjects, TIMES, st.integers(0, 99), st.booleans(), st.lists(MAPPED_OBJECTS, max_size=3).map(tuple)
+    ),
     topics.IMAGE: IMAGES,
     topics.IMAGE_RIGHT: IMAGES,
     topics.DEPTH: st.builds(r.DepthImage, TIMES, arrays("f4", SHAPES), WORDS),

@@ -13,11 +13,12 @@ BELOW = {
     "geometry": set[str](),
     "features": {"files", "geometry"},
     "map": {"geometry", "features"},
+    "ground": {"geometry", "features", "map"},
     "optimization": {"geometry", "features", "map"},
     "tracking": {"geometry", "features", "map", "optimization"},
-    "mapping": {"geometry", "features", "map", "optimization"},
     "loop_closing": {"geometry", "features", "map", "optimization"},
     "semi_dense": {"geometry", "features", "map"},
+    "mapping": {"geometry", "features", "map", "optimization"},
 }
 
 

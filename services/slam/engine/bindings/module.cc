@@ -106,6 +106,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("right_shift_sigma_px", &EngineOptions::right_shift_sigma_px)
       .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
       .def_readwrite("wait_for_loops", &EngineOptions::wait_for_loops)
+      .def_readwrite("camera_height_m", &EngineOptions::camera_height_m)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("semi_dense", &EngineOptions::semi_dense)
       .def_readwrite("map_id", &EngineOptions::map_id)
@@ -127,6 +128,19 @@ void BindResult(py::module_& module) {
       .def_readonly("features", &TrackingResult::features)
       .def_readonly("keyframe_inserted", &TrackingResult::keyframe_inserted)
       .def_readonly("moving_unplaced", &TrackingResult::moving_unplaced)
+      .def_readonly("road_normal", &TrackingResult::road_normal)
+      .def_readonly("road_distance", &TrackingResult::road_distance)
+      .def_property_readonly("object_contacts",
+                             [](const TrackingResult& result) {
+                               py::dict contacts;
+                               for (const ObjectContact& contact : result.object_contacts) {
+                                 Eigen::Matrix<double, 3, 3, Eigen::RowMajor> points;
+                                 points << contact.left.transpose(), contact.nearest.transpose(),
+                                     contact.right.transpose();
+                                 contacts[py::int_(contact.object_id)] = points;
+                               }
+                               return contacts;
+                             })
       .def_readonly("metric_scale", &TrackingResult::metric_scale)
       .def_readonly("loop_closed", &TrackingResult::loop_closed)
       .def_readonly("maps_merged", &TrackingResult::maps_merged)

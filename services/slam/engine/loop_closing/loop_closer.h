@@ -51,6 +51,8 @@ class LoopCloser {
 
   /// Whether Merge would change maps at this frame. All else that the background holds must be merged before it.
   bool IsDue(int64_t frame_index) const;
+  /// Whether nothing is being solved, so that keyframes may be moved by others.
+  bool IsFree() const { return graph_slot_.IsFree() && bundle_slot_.IsFree(); }
   LoopEvents Merge(Atlas* atlas, int64_t frame_index);
 
   /// Merges all that is pending, whatever frame it is due.
