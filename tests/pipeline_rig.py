@@ -114,6 +114,7 @@ class PipelineRig:
     def _loop(self, name: str, service: FrameService) -> FrameLoop:
         folder = self.config.run.out / "state" / name
         delivery = self.config.delivery
+        service.keep_state_in(folder)
         outbox = Outbox(2 * delivery.window, folder if service.snapshot() is not None else None)
         bus = FakeBus(self._network)
         loop = FrameLoop(service, bus, delivery, self.config.run.session, outbox)

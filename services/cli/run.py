@@ -19,6 +19,7 @@ from services.cli.flags import (
     StageFlag,
     resolve_config,
 )
+from services.cli.map_files import require_map_files
 from services.cli.pipeline_run import PipelineRun
 from services.cli.ports import any_free_port, require_gateway_port
 from services.cli.run_folder import new_run_folder, write_config
@@ -38,6 +39,15 @@ def run(
     frames: Annotated[int | None, typer.Option("--frames", help="Stop after this many frames.")] = None,
     calibration: Annotated[Path | None, typer.Option(help="Calibration of images, a video, a bag or a camera.")] = None,
     instances: Annotated[Path | None, typer.Option(help="Folder of instance masks (default: INPUT/instances).")] = None,
+    map_file: Annotated[
+        Path | None, typer.Option("--map", metavar="FILE", help="Begin in the map of an earlier run (--save-map).")
+    ] = None,
+    localize_only: Annotated[
+        bool, typer.Option("--localize-only", help="Only find the camera in --map, which stays as it is.")
+    ] = False,
+    save_map: Annotated[
+        Path | None, typer.Option("--save-map", metavar="FILE", help="Write the whole map here at the end.")
+    ] = None,
     port: PortFlag = None,
     config: ConfigFlag = None,
     settings: SetFlag = None,
@@ -45,7 +55,12 @@ def run(
     """Drive INPUT through all services; exit code 0 only if all of it went through."""
     flags: Overrides = {
         "camera": {"input": given_input, "max_frames": frames, "calibration": calibration},
-        "slam": {"stage": stage},
+        "slam": {
+            "stage": stage,
+            "map_file": map_file,
+            "localize_only": localize_only or None,
+            "save_map": save_map,
+        },
         "segmenter": {"instances": instances},
         "mapstore": {"http_port": port},
     }
@@ -85,6 +100,7 @@ def run_input(config: Config, serve: bool) -> None:
     """Run `config.camera.input` through. Raises KinemapError when it did not go through whole."""
     frames = open_briefly(config)
     require_gateway_port(config)
+    require_map_files(config)
     write_config(config)
     # Whoever ends this process politely means the whole run.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -98,6 +114,10 @@ def _make_absolute(config: Config) -> None:
         config.camera.input = str(Path(config.camera.input).resolve())
     if config.camera.calibration is not None:
         config.camera.calibration = config.camera.calibration.resolve()
+    if config.slam.map_file is not None:
+        config.slam.map_file = config.slam.map_file.resolve()
+    if config.slam.save_map is not None:
+        config.slam.save_map = config.slam.save_map.resolve()
     if config.segmenter.instances is not None:
         config.segmenter.instances = config.segmenter.instances.resolve()
 

@@ -44,6 +44,7 @@ class FrameColumns:
     timestamp_ns: npt.NDArray[np.int64]
     state: npt.NDArray[np.uint8]
     map_id: npt.NDArray[np.int64]
+    """the map it was in at the time; see MapView.frame_map_ids"""
     reference_row: npt.NDArray[np.int64]
     """row of KeyframeColumns, -1: the frame has no pose"""
     camera_from_reference: npt.NDArray[np.float64]
@@ -87,6 +88,14 @@ class MapView:
         whole = np.isfinite(composed).all(axis=1)
         poses[rows[whole]] = composed[whole]
         return poses
+
+    def frame_map_ids(self) -> npt.NDArray[np.int64]:
+        """(F,) the map each frame is in: that of its reference keyframe, which may have gone into another map since."""
+        frames, map_ids = self.frames, self.frames.map_id.copy()
+        rows = np.flatnonzero(frames.reference_row >= 0)
+        known = np.isfinite(self.keyframes.pose[frames.reference_row[rows], 0])
+        map_ids[rows[known]] = self.keyframes.map_id[frames.reference_row[rows[known]]]
+        return map_ids
 
     def current_pose(self) -> npt.NDArray[np.float64] | None:
         """(7,) map_from_camera of the newest frame, None where it was not tracked."""

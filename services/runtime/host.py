@@ -123,6 +123,7 @@ def run_frame_service(service: FrameService, bus: Bus, config: Config) -> None:
     """Run `service` on `bus` until SIGTERM."""
     folder = config.run.out / "state" / service.name
     lossless = config.delivery.mode == "lossless"
+    service.keep_state_in(folder)
     outbox = Outbox(2 * config.delivery.window, folder if lossless and service.snapshot() is not None else None)
     try:
         loop = FrameLoop(service, bus, config.delivery, config.run.session, outbox)

@@ -2,6 +2,7 @@
 """What a service that works frame by frame is: the part that a service.py fills in."""
 
 from abc import ABC, abstractmethod
+from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 from schemas.topics import Topic
@@ -57,6 +58,9 @@ class FrameService(ABC):
     def finish(self, bundle: Bundle) -> list[Outgoing]:
         """The input is over; `bundle` holds topics.END and `final_awaits`."""
         return []
+
+    def keep_state_in(self, folder: Path) -> None:  # noqa: B027 - most keep nothing but what `snapshot` gives
+        """A folder of this run and service, for state too large to be written with every frame; called once, first."""
 
     def snapshot(self) -> State | None:
         """All state over frames as arrays, empty before the first; None, always, for a service that has none."""

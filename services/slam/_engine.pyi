@@ -67,6 +67,8 @@ class EngineOptions:
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
     wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
     camera_height_m: float  # 0: unknown; else above the road, metres: one camera's map becomes metric by it
+    new_map_after_lost: int  # 50 lost frames, then another map begins; the old one is kept
+    localize_only: bool  # False; True only finds the camera in the loaded maps, which stay as they are
     opencv_threads: int  # 1, of the whole process; 0 leaves OpenCV as it is
     semi_dense: bool  # False: inverse depths of every keyframe's gradient pixels, in the background
     map_id: int  # 0; ids start at map_id << 32
@@ -198,6 +200,25 @@ class Engine:
         """Track and map the begun frame. RuntimeError when none was begun, ValueError for arrays that do not fit."""
     def flush(self) -> None:
         """The end of the input: merge the background's work and adjust the whole map once more; takes seconds."""
+    def settle(self) -> None:
+        """Merge what the background holds; for a snapshot that is exact."""
+    def load_maps(self, path: str) -> None:
+        """Begin in another session's maps. ValueError that names the file when it cannot be used; before any frame."""
+    def resume_maps(self, path: str, first_free_map_id: int) -> None:
+        """The same with this session's maps, after a fall; new ids come from blocks from `first_free_map_id` on."""
+    def save_maps(self, path: str, in_background: bool) -> None:
+        """Write all maps into one file, atomically. RuntimeError when it, or the one before it, cannot be written."""
+    def checkpoint(self, path: str) -> None:
+        """Settle, write the whole state, and go on from what was written, as an engine that `restore`s it does."""
+    def restore(self, path: str) -> None:
+        """Go on where an engine of the same camera and options made a checkpoint, to the last bit."""
+    @property
+    def active_map_id(self) -> int: ...
+    @property
+    def next_map_id(self) -> int: ...
+    @property
+    def metric_scale(self) -> bool:
+        """Whether the active map's units are metres."""
     @property
     def remaining_radial(self) -> float:
         """Radial distortion k that flush() found on top of the calibration (pixel = project(point (1 + k r^2)))."""

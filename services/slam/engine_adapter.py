@@ -4,6 +4,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 import cv2
@@ -16,7 +17,7 @@ from schemas.records.camera import CameraCalibration, DepthImage, Image
 from schemas.records.mapped_objects import MappedObjects
 from schemas.records.objects import Objects
 from schemas.records.slam import MapUpdate, MaskSource, TrackedFrame, TrackingState
-from services.runtime.errors import InputError
+from services.runtime.errors import InputError, ResourceError
 from services.slam import _engine
 from services.slam.object_mapper import ObjectMapper
 from services.slam.vocabulary import SHIPPED_VOCABULARY
@@ -42,6 +43,8 @@ class EngineSettings:
     radial_sigma: float = 0.01
     threads: int = 2
     camera_height_m: float = 0.0
+    new_map_after_lost: int = 50
+    localize_only: bool = False
     opencv_threads: int = 1
     loop_closing: bool = True
     wait_for_loops: bool = True
@@ -71,8 +74,10 @@ class SlamEngine:
         self._settings = settings or EngineSettings()
         self._metric_scale = False
         self._depth: DepthImage | None = None
+        self._calibration = calibration
         self._object_mapper = ObjectMapper(calibration)
         self._mapped_objects = MappedObjects(0)
+        self._map_id = self._settings.map_id
         with _input_errors():
             self._engine = _engine.Engine(_camera_model(calibration, right), _engine_options(self._settings))
 
@@ -107,6 +112,7 @@ class SlamEngine:
                 masks is MaskSource.FRESH,
             )
         self._metric_scale = result.metric_scale
+        self._map_id = result.map_id
         frame = self._tracked_frame(result, masks)
         contacts, road_distance_m = result.object_contacts, result.road_distance
         self._mapped_objects = self._object_mapper.look(frame, objects, self._depth, contacts, road_distance_m)
@@ -121,6 +127,44 @@ class SlamEngine:
         """End the input: merge the background's work and adjust the whole map once more; takes seconds."""
         self._engine.flush()
 
+    def load_maps(self, path: Path) -> None:
+        """Begin in another session's maps; before any frame. InputError that names the file and what is wrong."""
+        with _input_errors():
+            self._engine.load_maps(str(path))
+
+    def resume_maps(self, path: Path, first_free_map_id: int) -> None:
+        """Begin in this session's maps, after a fall; ids from `first_free_map_id` << 32 on were never used."""
+        with _input_errors():
+            self._engine.resume_maps(str(path), first_free_map_id)
+
+    def save_maps(self, path: Path, *, in_background: bool = False) -> None:
+        """Write all maps into one file, atomically. ResourceError when it, or the one before it, cannot be written."""
+        with _resource_errors():
+            self._engine.save_maps(str(path), in_background)
+
+    def settle(self) -> None:
+        """Merge what the background holds, so that a checkpoint has it too."""
+        self._engine.settle()
+
+    def checkpoint(self, path: Path) -> None:
+        """Write the whole state and go on from it, just as an engine that restores it does."""
+        with _resource_errors():
+            self._engine.checkpoint(str(path))
+        self._object_mapper = ObjectMapper(self._calibration)
+
+    def restore(self, path: Path) -> None:
+        """Go on where an engine of the same settings made a checkpoint, to the last bit. InputError as `load_maps`."""
+        with _input_errors():
+            self._engine.restore(str(path))
+        self._object_mapper = ObjectMapper(self._calibration)
+        self._map_id = self._engine.active_map_id
+        self._metric_scale = self._engine.metric_scale
+
+    @property
+    def next_map_id(self) -> int:
+        """The number that the next map will have; higher ones were never used."""
+        return self._engine.next_map_id
+
     @property
     def remaining_radial(self) -> float:
         """Radial distortion that `flush` found on top of the calibration; 0 before, and where calibration is exact."""
@@ -130,7 +174,7 @@ class SlamEngine:
         """Everything of the map that changed since the last call, under the time of the newest frame."""
         return MapUpdate(
             timestamp_ns=timestamp_ns,
-            map_id=self._settings.map_id,
+            map_id=self._map_id,
             metric_scale=self._metric_scale,
             **self._engine.take_map_update(),
         )
@@ -168,6 +212,15 @@ def _input_errors() -> Iterator[None]:
         yield
     except ValueError as error:
         raise InputError(str(error)) from error
+
+
+@contextmanager
+def _resource_errors() -> Iterator[None]:
+    """A file that the disk does not take."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise ResourceError(f"map file {error}") from error
 
 
 def _camera_model(calibration: CameraCalibration, right: CameraCalibration | None) -> _engine.CameraModel:
@@ -213,6 +266,8 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.radial_sigma = settings.radial_sigma
     options.threads = settings.threads
     options.camera_height_m = settings.camera_height_m
+    options.new_map_after_lost = settings.new_map_after_lost
+    options.localize_only = settings.localize_only
     options.opencv_threads = settings.opencv_threads
     options.loop_closing = settings.loop_closing
     options.wait_for_loops = settings.wait_for_loops

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The slam process: `python -m services.slam.service --config FILE`."""
 
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -16,17 +17,13 @@ from services.runtime.log import get_logger
 from services.runtime.outbox import State
 from services.runtime.service import Bundle, FrameService, Outgoing
 from services.slam.engine_adapter import EngineSettings, SlamEngine
-from services.slam.lost_policy import LostPolicy
+from services.slam.map_keeper import MapKeeper
 
 NAME = "slam"
 
 
 class SlamService(FrameService):
-    """Drives the engine: a pose for every frame, and what changed of the map.
-
-    The engine's own state is not kept on disk yet: after a kill, tracking begins a new map in the same session, and
-    nothing already sent is lost.
-    """
+    """Drives the engine: a pose for every frame, and what changed of the map. A killed one goes on in the same map."""
 
     name: ClassVar[str] = NAME
     awaits: ClassVar[tuple[Topic, ...]] = (
@@ -46,9 +43,11 @@ class SlamService(FrameService):
         self._base_from_camera = np.array(config.mapstore.base_from_camera)
         self._log = get_logger(NAME)
         self._engine: SlamEngine | None = None
-        self._lost_policy = LostPolicy(config.slam.new_map_after_lost)
         self._calibration: CameraCalibration | None = None
         self._right_calibration: CameraCalibration | None = None
+        self._keeper = MapKeeper(config, self.awaits)
+        self._sequence = -1
+        self._ended = False
         self._map_id = 0
         self._objects: Objects | None = None
         self._state = TrackingState.INITIALIZING
@@ -62,17 +61,22 @@ class SlamService(FrameService):
 
     def process(self, bundle: Bundle) -> list[Outgoing]:
         """Track one frame."""
-        right_calibration = bundle.get(topics.CALIBRATION_RIGHT) if self._options.use_stereo else None
-        engine = self._engine_for(bundle[topics.CALIBRATION], right_calibration)
+        self._keeper.note_input(bundle)
+        outgoing = self._track(bundle)
+        self._sequence = bundle.envelope.sequence
+        return outgoing
+
+    def _track(self, bundle: Bundle) -> list[Outgoing]:
+        engine = self._engine_for(bundle)
         right = bundle.get(topics.IMAGE_RIGHT) if self._right_calibration is not None else None
         depth = bundle.get(topics.DEPTH) if self._options.use_depth else None
         engine.begin_frame(bundle[topics.IMAGE], right, depth)
         objects, masks = self._masks(bundle.get(topics.OBJECTS))
         frame = engine.finish_frame(objects, masks)
         self._note(frame)
-        if self._lost_policy.gives_up(frame):
-            self._begin_new_map(engine)
+        self._keeper.prepare(engine, frame)
         update = engine.take_map_update(bundle.timestamp_ns)
+        self._keeper.keep(engine, bundle)
         outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
         if engine.mapped_objects.objects:
             outgoing.append(Outgoing(topics.MAPPED_OBJECTS, engine.mapped_objects))
@@ -82,26 +86,56 @@ class SlamService(FrameService):
 
     def finish(self, bundle: Bundle) -> list[Outgoing]:
         """The input is over: merge what is still being optimised, and send it."""
+        self._sequence = bundle.envelope.sequence
         if self._engine is None:
             return [Outgoing(topics.MAP_UPDATE, MapUpdate(bundle.timestamp_ns, self._map_id))]
         self._engine.flush()
         self._log.info("adjusted_at_the_end", remaining_radial=f"{self._engine.remaining_radial:.5f}")
-        return [Outgoing(topics.MAP_UPDATE, self._engine.take_map_update(bundle.timestamp_ns))]
+        update = self._engine.take_map_update(bundle.timestamp_ns)
+        self._end()
+        return [Outgoing(topics.MAP_UPDATE, update)]
+
+    def keep_state_in(self, folder: Path) -> None:
+        """Checkpoints go there."""
+        self._keeper.keep_in(folder)
 
     def snapshot(self) -> State:
-        """The map's number, so that a successor's ids are new ones."""
-        return {"map_id": np.array(self._map_id, dtype=np.int64)}
+        """Which checkpoint the newest frame goes back to, and how far the session is."""
+        numbers = {"sequence": self._sequence, "map_id": self._map_id, "ended": int(self._ended)}
+        return {**self._keeper.snapshot(), **{name: np.array(number, np.int64) for name, number in numbers.items()}}
 
     def restore(self, state: State) -> None:
-        """Begin the next map."""
-        self._map_id = int(state["map_id"]) + 1
-        self._log.warning("new_map_after_restart", map_id=self._map_id)
+        """Take up the predecessor's engine, or, where no checkpoints are made, begin the next map."""
+        self._map_id = int(state["map_id"])
+        if not self._keeper.is_exact:
+            self._map_id += 1
+            self._log.warning("new_map_after_restart", map_id=self._map_id)
+            return
+        self._sequence, self._ended = int(state["sequence"]), bool(state["ended"])
+        checkpoint, frames = self._keeper.restore(state)
+        for bundle in frames:
+            if self._engine is None:
+                self._engine_for(bundle, checkpoint)
+            if bundle.envelope.sequence > self._keeper.checkpoint:
+                self._track(bundle)
+        self._log.warning("state_restored", checkpoint=self._keeper.checkpoint, sequence=self._sequence)
+
+    def close(self) -> None:
+        """Save the map where the input never said that it was over."""
+        self._end()
 
     def metrics(self) -> dict[str, float]:
         """What happened so far."""
         return dict(self._counts)
 
-    def _engine_for(self, calibration: CameraCalibration, right: CameraCalibration | None) -> SlamEngine:
+    def _end(self) -> None:
+        if self._engine is not None and not self._ended:
+            self._ended = True
+            self._keeper.end(self._engine)
+
+    def _engine_for(self, bundle: Bundle, checkpoint: Path | None = None) -> SlamEngine:
+        calibration = bundle[topics.CALIBRATION]
+        right = bundle.get(topics.CALIBRATION_RIGHT) if self._options.use_stereo else None
         known = self._calibration
         if self._engine is not None and known is not None:
             if not _same_camera(known, calibration) or not _same_pair(self._right_calibration, right):
@@ -120,20 +154,18 @@ class SlamService(FrameService):
             wait_for_loops=self._lossless,
             semi_dense=options.semi_dense,
             camera_height_m=options.camera_height_m or 0.0,
+            new_map_after_lost=options.new_map_after_lost,
+            localize_only=options.localize_only,
             map_from_first_camera=self._base_from_camera,
             map_id=self._map_id,
         )
         self._engine = SlamEngine(calibration, settings, right)
         self._calibration, self._right_calibration = calibration, right
+        if checkpoint is not None:
+            self._engine.restore(checkpoint)
+        else:
+            self._keeper.begin(self._engine)
         return self._engine
-
-    def _begin_new_map(self, engine: SlamEngine) -> None:
-        """Finish the map of `engine`; the next frame begins another with ids of its own."""
-        engine.flush()
-        self._engine = None
-        self._map_id += 1
-        self._lost_policy = LostPolicy(self._options.new_map_after_lost)
-        self._log.warning("new_map_after_lost", map_id=self._map_id)
 
     def _masks(self, objects: Objects | None) -> tuple[Objects | None, MaskSource]:
         """This frame's objects, else the newest there are, and which of the two."""
@@ -160,6 +192,9 @@ class SlamService(FrameService):
             self._log.info("maps_merged", map_id=frame.map_id, timestamp_ns=frame.timestamp_ns)
         self._counts["loops_closed"] += frame.loop_closed
         self._counts["maps_merged"] += frame.maps_merged
+        if frame.map_id != self._map_id:
+            self._log.warning("another_map", map_id=frame.map_id, before=self._map_id)
+            self._map_id = frame.map_id
         self._counts["keyframes_inserted"] += frame.keyframe_inserted
         self._counts["frames_lost"] += frame.state is TrackingState.LOST
         self._counts["moving_unplaced"] += frame.moving_unplaced

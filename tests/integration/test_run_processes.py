@@ -26,7 +26,7 @@ pytestmark = pytest.mark.real_processes
 
 LIMIT_S = 240.0
 KINEMAP = [sys.executable, "-m", "services.cli.app"]
-KILLED = ("camera", "segmenter", "motion", "tracker", "mapstore", "recorder", "bus")
+KILLED = ("camera", "segmenter", "motion", "tracker", "slam", "mapstore", "recorder", "bus")
 RESULTS = ("trajectory.tum", "keyframes.tum", "map.pcd")
 
 

@@ -79,7 +79,7 @@ def main_map_id(view: MapView) -> int:
     posed = np.isfinite(view.frames.live_pose[:, 0]) | (view.frames.reference_row >= 0)
     if not posed.any():
         return view.map_id
-    ids, frames = np.unique(view.frames.map_id[posed], return_counts=True)
+    ids, frames = np.unique(view.frame_map_ids()[posed], return_counts=True)
     return int(ids[np.argmax(frames)])
 
 

@@ -13,7 +13,7 @@ def trajectory_kitti(view: MapView, map_id: int) -> str:
     KITTI has no times and no way to leave a frame out: where frames were not tracked, the TUM file says which.
     """
     poses = view.final_poses()
-    poses = poses[(view.frames.map_id == map_id) & np.isfinite(poses).all(axis=1)]
+    poses = poses[(view.frame_map_ids() == map_id) & np.isfinite(poses).all(axis=1)]
     if len(poses) == 0:
         return ""
     relative = sim3.compose_pose(np.broadcast_to(sim3.inverse_pose(poses[0]), poses.shape), poses)

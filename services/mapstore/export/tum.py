@@ -12,7 +12,7 @@ def trajectory_tum(view: MapView, map_id: int) -> str:
     """map_from_camera of every frame of one map that has a pose, by its final keyframe's pose (culled ones too)."""
     frames = view.frames
     poses = view.final_poses()
-    chosen = np.flatnonzero((frames.map_id == map_id) & np.isfinite(poses).all(axis=1))
+    chosen = np.flatnonzero((view.frame_map_ids() == map_id) & np.isfinite(poses).all(axis=1))
     return _lines(frames.timestamp_ns[chosen], poses[chosen])
 
 

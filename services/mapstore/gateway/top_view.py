@@ -26,7 +26,7 @@ def top_view(view: MapView) -> bytes:
         local = np.concatenate([cluster.position[::step] for cluster in clusters]).astype(np.float64)
         points[:, :2] = sim3.transform(np.repeat(keyframes.pose[rows], sizes, axis=0), local)[:, :2]
         points[:, 2] = np.concatenate([cluster.state[::step] for cluster in clusters])
-    way = view.final_poses()[view.frames.map_id == view.map_id, :2]
+    way = view.final_poses()[view.frame_map_ids() == view.map_id, :2]
     way = way[np.isfinite(way).all(axis=1)]
     way = way[:: 1 + len(way) // MOST_POSES].astype("<f4")
     return np.array([len(points), len(way)], dtype="<u4").tobytes() + points.tobytes() + way.tobytes()

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The SLAM engine's options that a user sets."""
 
-from typing import Literal
+from pathlib import Path
+from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 
 class SlamConfig(BaseModel):
@@ -44,3 +45,22 @@ class SlamConfig(BaseModel):
     use_depth: bool = Field(
         True, description="place moving points, and set the scale, by the depth image if there is one"
     )
+    map_file: Path | None = Field(None, description="map of an earlier run, in which this one begins")
+    save_map: Path | None = Field(None, description="file that gets the whole map at the end")
+    localize_only: bool = Field(False, description="only find the camera in map_file, which stays as it is")
+    checkpoint_keyframes: int = Field(
+        20, ge=0, description="keyframes between two checkpoints, from which a killed service goes on; 0: none"
+    )
+    exact_checkpoint_keyframes: int = Field(
+        200,
+        ge=1,
+        description="the same in lossless, where the inputs since then are kept too, and done again after a kill",
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.localize_only and self.map_file is None:
+            raise ValueError("localize_only needs a map_file to find the camera in")
+        if self.localize_only and self.save_map is not None:
+            raise ValueError("localize_only changes no map, so there is none for save_map")
+        return self

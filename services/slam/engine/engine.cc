@@ -81,13 +81,14 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       single_frame_builder_(camera_, scales_),
       tracker_(TrackerOptions(options), camera_, &places_),
       keyframe_policy_({}),
+      lost_policy_({.patience_frames = options.new_map_after_lost}),
       atlas_(options.map_id, scales_),
       mapper_(MapperOptions(options), camera_),
       contact_placer_(camera_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
       loop_closer_(ClosingOptions(options), camera_) {
   if (options_.semi_dense) semi_dense_.emplace(SemiDenseOptions{}, camera_);
-  if (options.camera_height_m > 0) {
+  if (options.camera_height_m > 0 && !options.localize_only) {
     ground_scale_.emplace(camera_, options.camera_height_m, RoadNormal(options.map_from_first_camera));
   }
   if (options.opencv_threads > 0) cv::setNumThreads(options.opencv_threads);
@@ -146,7 +147,10 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
   RoadView road = std::move(begun_->road);
   begun_.reset();
   if (map() == nullptr) {
-    Initialize(&frame, &result);
+    if (!RecoverInOtherMaps(&frame, &result) && !WaitToBeRecognised(&result)) Initialize(&frame, &result);
+    if (result.state == TrackingState::kInitializing && !atlas_.maps().empty()) {
+      result.reason += "; not recognised in " + std::to_string(atlas_.maps().size()) + " earlier map(s)";
+    }
   } else {
     const Stopwatch stopwatch;
     const std::optional<KeyframeId> mapped = new_keyframe_;
@@ -158,7 +162,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
     MergeLoops(&result);
     places_.Follow(map());
     if (mapped) LookForLoops(*mapped, &result);
-    if (options_.stage == Stage::kMoving && objects.masks_fresh) {
+    if (options_.stage == Stage::kMoving && objects.masks_fresh && !options_.localize_only) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
     Track(&frame, &result);
@@ -176,7 +180,11 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
       semi_dense_->Add(*map(), frame.reference_keyframe_id, image, std::move(labels), frame_index_);
     }
   }
-  result.metric_scale = map() != nullptr && map()->metric_scale();
+  if (map() != nullptr) {
+    result.map_id = map()->map_id();
+    result.metric_scale = map()->metric_scale();
+  }
+  if (result.state == TrackingState::kLost && map() != nullptr) LeaveMapIfHopeless(&result);
   return result;
 }
 
@@ -265,7 +273,13 @@ void Engine::Track(Frame* frame, TrackingResult* result) {
   result->state = pose.tracked ? TrackingState::kTracking : TrackingState::kLost;
   result->reason = pose.reason;
   result->tracked_landmarks = pose.estimate.inliers;
-  if (!pose.tracked) return;
+  if (!pose.tracked) {
+    lost_policy_.Lost();
+    if (lost_policy_.lost_frames() == 1) Settle();  // so that maps stay as they are while the camera is looked for
+    RecoverInOtherMaps(frame, result);
+    return;
+  }
+  lost_policy_.Found();
   if (NeedsKeyframe(*frame, pose.estimate.inliers)) {
     const Stopwatch stopwatch;
     const RigidTransform camera_from_map = frame->camera_from_map;
@@ -300,6 +314,7 @@ void Engine::LookForLoops(KeyframeId mapped, TrackingResult* result) {
 }
 
 bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
+  if (options_.localize_only) return false;
   TrackingQuality quality;
   quality.frames_since_relocalization = tracker_.frames_since_relocalization();
   quality.frames_since_keyframe = static_cast<int>(frame_index_ - last_keyframe_index_);
@@ -343,10 +358,12 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 }
 
 void Engine::Flush() {
-  FinishMapping();
+  if (options_.localize_only) return;
+  Settle();
+  for (const auto& other : atlas_.maps()) {
+    if (other.get() != map()) mapper_.Finish(other.get());
+  }
   if (map() == nullptr) return;
-  mapper_.Settle(map());
-  loop_closer_.Settle(&atlas_);
   mapper_.Finish(map());
   if (ground_scale_) ground_scale_->Finish(map());
   if (semi_dense_) semi_dense_->Finish(*map());
@@ -357,7 +374,7 @@ MapUpdate Engine::TakeUpdate() {
   late_frames_.clear();
   // Only what has begun is waited for.
   mapper_.WaitForMapping();
-  MapUpdate update = TakeMapUpdate(map(), late_frames);
+  MapUpdate update = TakeMapUpdate(atlas_, late_frames);
   if (semi_dense_) AddSemiDense(semi_dense_->TakeFinished(), &update);
   mapper_.StartMapping();
   return update;

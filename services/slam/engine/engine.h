@@ -18,9 +18,11 @@
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
 #include "semi_dense/semi_dense_mapper.h"
+#include "storage/map_snapshot.h"
 #include "tracking/camera_tracker.h"
 #include "tracking/initial_map_builder.h"
 #include "tracking/keyframe_policy.h"
+#include "tracking/lost_policy.h"
 #include "tracking/map_initializer.h"
 #include "tracking/single_frame_map_builder.h"
 #include "tracking_result.h"
@@ -35,7 +37,8 @@ struct FrameObjects {
 };
 
 /// SLAM with one camera, a rectified pair or a depth camera, frame by frame: the same images, objects and options give
-/// the same bytes, on any load. Not to be called from two threads at once.
+/// the same bytes, on any load. A camera that stays lost gets a map of its own, and is looked for in every map it was
+/// ever in. Not to be called from two threads at once.
 class Engine {
  public:
   /// Throws std::invalid_argument when an option is out of its range or the vocabulary cannot be read.
@@ -51,20 +54,48 @@ class Engine {
   /// track image of another size.
   TrackingResult FinishFrame(const FrameObjects& objects);
 
-  /// The end of the input: merges the background's work and adjusts the whole map (its newest 300 keyframes) once more,
+  /// The end of the input: merges the background's work and adjusts every map (its newest 300 keyframes) once more,
   /// together with the radial distortion that the calibration left.
   void Flush();
 
   /// Radial distortion k that Flush found on top of the calibration; 0 before. A perfect calibration gives 0.
   double remaining_radial() const { return mapper_.remaining_radial(); }
 
+  int64_t active_map_id() const { return atlas_.active_map_id(); }
+  /// The number of the map after those there are.
+  int64_t next_map_id() const { return atlas_.next_map_id(); }
+  bool metric_scale() const { return map() != nullptr && map()->metric_scale(); }
+
   /// Everything that changed since the last call. What is mapped around a keyframe in the background begins with the
   /// next call of this or of BeginFrame, and so is reported after the next frame; nothing is left after Flush.
   MapUpdate TakeUpdate();
 
+  /// Merges what the background holds, so that a snapshot has it too.
+  void Settle();
+
+  /// All maps, and what the session carries from frame to frame. What the background holds is left out.
+  MapSnapshot Snapshot();
+
+  /// Takes in another session's maps, in an engine that has seen no frame. The camera must be recognised in one of
+  /// them; only when it is not for `new_map_after_lost` frames does it get a map of its own. The next update tells of
+  /// everything loaded. Throws MapFileError that names the file.
+  void LoadMaps(const std::string& path);
+
+  /// The same with this session's maps, after a fall. Ids from `first_free_map_id` << 32 on were never used, so that
+  /// what is mapped now is not taken for what was mapped after the snapshot and forgotten.
+  void ResumeMaps(const std::string& path, int64_t first_free_map_id);
+
+  /// Goes on exactly where a settled engine of the same options took this snapshot; what happens next is the same to
+  /// the last bit. Throws MapFileError.
+  void RestoreState(const std::vector<uint8_t>& bytes);
+
  private:
   /// Gives the maps back to the caller's thread; public methods begin with it, but BeginFrame and TakeUpdate.
   void FinishMapping();
+  template <typename Archive>
+  void SessionFields(Archive& archive);
+  void BeginInLoadedMaps();
+  bool WaitToBeRecognised(TrackingResult* result);
   Frame MakeFrame(const FrameObjects& objects);
   void Initialize(Frame* frame, TrackingResult* result);
   void StartFromOneFrame(Frame* frame);
@@ -72,6 +103,8 @@ class Engine {
   void MakeMetricIfFound();
   void FillWaitingFrames(const Frame& first, const Frame& current);
   void Track(Frame* frame, TrackingResult* result);
+  bool RecoverInOtherMaps(Frame* frame, TrackingResult* result);
+  void LeaveMapIfHopeless(TrackingResult* result);
   SlamMap* map() { return atlas_.active(); }
   const SlamMap* map() const { return atlas_.active(); }
   void MergeLoops(TrackingResult* result);
@@ -91,6 +124,7 @@ class Engine {
   SingleFrameMapBuilder single_frame_builder_;
   CameraTracker tracker_;
   KeyframePolicy keyframe_policy_;
+  LostPolicy lost_policy_;
   Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
   LateMetricScale late_scale_;
@@ -111,6 +145,7 @@ class Engine {
   std::optional<BegunFrame> begun_;
   std::optional<int64_t> last_timestamp_ns_;
   int64_t frame_index_ = -1;
+  bool must_be_recognised_ = false;  // in a loaded map, before another is begun
   int64_t last_keyframe_index_ = 0;
   std::optional<KeyframeId> new_keyframe_;  // that the last frame became
   std::deque<Frame> waiting_;               // frames before the map existed

@@ -31,7 +31,9 @@ struct EngineOptions {
   bool semi_dense = false;            ///< inverse depths of every keyframe's gradient pixels, in the background
   int64_t map_id = 0;                 ///< ids start at map_id << 32; 0 <= map_id < 2^31
   std::string vocabulary_path;        ///< of the places' words; empty: no place is recognised but by its looks nearby
-  double camera_height_m = 0;  ///< of the camera above the road, with one camera; 0: unknown, scale stays arbitrary
+  double camera_height_m = 0;   ///< of the camera above the road, with one camera; 0: unknown, scale stays arbitrary
+  int new_map_after_lost = 50;  ///< lost frames after which another map is begun; the old one is kept
+  bool localize_only = false;   ///< only finds the camera in the loaded maps, which stay as they are
   Eigen::Matrix4d map_from_first_camera = Eigen::Matrix4d::Identity();  ///< pose of the first keyframe
 
   /// Throws std::invalid_argument that names the option and its value.

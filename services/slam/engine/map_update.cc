@@ -53,18 +53,20 @@ void AddSemiDense(const std::vector<SemiDenseCloud>& clouds, MapUpdate* update) 
   }
 }
 
-MapUpdate TakeMapUpdate(SlamMap* map, const std::vector<LateFramePose>& late_frames) {
+MapUpdate TakeMapUpdate(const Atlas& atlas, const std::vector<LateFramePose>& late_frames) {
   MapUpdate update;
   for (const LateFramePose& frame : late_frames) {
     update.frame_timestamp_ns.push_back(frame.timestamp_ns);
     update.frame_reference_keyframe_id.push_back(frame.reference_keyframe_id);
     update.frame_camera_from_reference.push_back(ToPoseArray(frame.camera_from_reference));
   }
-  if (map == nullptr) return update;
-  const MapChanges changes = map->TakeChanges();
-  for (const KeyframeId id : changes.keyframes) AddKeyframe(*map, id, &update);
-  for (const LandmarkId id : changes.landmarks) AddLandmark(*map->FindLandmark(id), &update);
-  update.removed_landmark_id = changes.removed_landmarks;
+  for (const auto& map : atlas.maps()) {
+    const MapChanges changes = map->TakeChanges();
+    for (const KeyframeId id : changes.keyframes) AddKeyframe(*map, id, &update);
+    for (const LandmarkId id : changes.landmarks) AddLandmark(*map->FindLandmark(id), &update);
+    update.removed_landmark_id.insert(update.removed_landmark_id.end(), changes.removed_landmarks.begin(),
+                                      changes.removed_landmarks.end());
+  }
   return update;
 }
 

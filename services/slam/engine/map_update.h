@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "map/slam_map.h"
+#include "map/atlas.h"
 #include "semi_dense/semi_dense_cloud.h"
 
 namespace kinemap {
@@ -60,7 +60,7 @@ struct MapUpdate {
 
 void AddSemiDense(const std::vector<SemiDenseCloud>& clouds, MapUpdate* update);
 
-/// Takes the changes out of the map (null: none) and adds the late frame poses.
-MapUpdate TakeMapUpdate(SlamMap* map, const std::vector<LateFramePose>& late_frames);
+/// Takes the changes out of every map and adds the late frame poses.
+MapUpdate TakeMapUpdate(const Atlas& atlas, const std::vector<LateFramePose>& late_frames);
 
 }  // namespace kinemap

@@ -121,12 +121,14 @@ def test_export_writes_the_same_bytes_every_time(tmp_path: Path) -> None:
 def test_of_maps_that_were_never_joined_the_longest_is_exported(tmp_path: Path) -> None:
     store = MapStore(tmp_path / "map.sqlite", "drive")
     for sequence, (frame, update) in enumerate(drive(8)):
-        store.put(sequence, replace(frame, map_id=2) if sequence > 5 else frame, update, NO_DENSITY)
+        map_id = 1 if sequence < 5 else 2
+        keyframe_map_id = np.full(len(update.keyframe_id), map_id)
+        store.put(sequence, replace(frame, map_id=map_id), replace(update, keyframe_map_id=keyframe_map_id), NO_DENSITY)
     store.close()
     (trajectory, _) = export_map(tmp_path / "map.sqlite", tmp_path, ["tum"])
-    assert len(trajectory.read_text().splitlines()) == 6
+    assert len(trajectory.read_text().splitlines()) == 5
     (trajectory, _) = export_map(tmp_path / "map.sqlite", tmp_path, ["tum"], map_id=2)
-    assert len(trajectory.read_text().splitlines()) == 2
+    assert len(trajectory.read_text().splitlines()) == 3
 
 
 def test_a_format_nobody_knows_is_refused_before_anything_is_written(tmp_path: Path) -> None:

@@ -8,10 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.records import MapUpdate, MotionState
+from services.mapstore.export.tum import trajectory_tum
 from services.mapstore.landmark_table import LandmarkTable
 from services.mapstore.map_state import MapState
 from tests.unit.mapstore.street_map import (
     FRAME_NS,
+    drive,
     keyframe_id,
     landmarks,
     tracked,
@@ -144,3 +146,26 @@ def test_bounds_hold_every_landmark() -> None:
 
 def test_removing_what_is_not_there_changes_nothing() -> None:
     assert LandmarkTable().remove(np.array([3, 4])) == (set(), set())
+
+
+def test_frames_go_into_the_map_that_takes_theirs_over() -> None:
+    state = MapState()
+    for frame, update in drive(3, every=1):
+        state.add_frame(frame.timestamp_ns // FRAME_NS, frame)
+        state.apply(update)
+    later = with_keyframes(MapUpdate(3 * FRAME_NS, map_id=2), 3)
+    state.add_frame(3, replace(tracked(3, 3), map_id=2))
+    state.apply(replace(later, keyframe_map_id=np.array([2])))
+    assert state.view().frame_map_ids().tolist() == [1, 1, 1, 2]
+    assert len(trajectory_tum(state.view(), 1).splitlines()) == 3
+    state.apply(with_keyframes(MapUpdate(4 * FRAME_NS, map_id=1), 3, y=7.0))
+    view = state.view()
+    assert view.frame_map_ids().tolist() == [1, 1, 1, 1]
+    assert view.final_poses()[3, :2].tolist() == [3.0, 7.0]
+    assert len(trajectory_tum(view, 1).splitlines()) == 4
+
+
+def test_a_frame_without_a_known_keyframe_stays_in_the_map_it_was_reported_in() -> None:
+    state = MapState()
+    state.add_frame(0, replace(tracked(0, 3), map_id=4))
+    assert state.view().frame_map_ids().tolist() == [4]

@@ -14,6 +14,7 @@ BELOW = {
     "features": {"files", "geometry"},
     "map": {"geometry", "features"},
     "ground": {"geometry", "features", "map"},
+    "storage": {"files", "geometry", "features", "map"},
     "optimization": {"geometry", "features", "map"},
     "tracking": {"geometry", "features", "map", "optimization"},
     "loop_closing": {"geometry", "features", "map", "optimization"},

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <memory>
 #include <mutex>
 #include <sstream>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "bindings/array_conversion.h"
 #include "bindings/vocabulary_bindings.h"
 #include "engine.h"
+#include "storage/map_saver.h"
 
 namespace py = pybind11;
 
@@ -20,7 +22,8 @@ namespace {
 /// The engine behind a lock, so that two Python threads cannot enter it while the GIL is released.
 class LockedEngine {
  public:
-  LockedEngine(const CameraModel& camera, const EngineOptions& options) : engine_(camera, options) {}
+  LockedEngine(const CameraModel& camera, const EngineOptions& options)
+      : camera_(camera), options_(options), engine_(std::make_unique<Engine>(camera, options)) {}
 
   void BeginFrame(int64_t timestamp_ns, const py::array& image, const std::optional<py::array>& right,
                   const std::optional<py::array>& depth_m) {
@@ -30,7 +33,7 @@ class LockedEngine {
     if (depth_m) depth_view = ImageView<float>("depth_m", *depth_m, CV_32F);
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    engine_.BeginFrame(timestamp_ns, view, right_view, depth_view);
+    engine_->BeginFrame(timestamp_ns, view, right_view, depth_view);
   }
 
   TrackingResult FinishFrame(const std::optional<py::array>& track_image, const py::array& object_ids,
@@ -42,19 +45,60 @@ class LockedEngine {
     objects.masks_fresh = masks_fresh;
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return engine_.FinishFrame(objects);
+    return engine_->FinishFrame(objects);
   }
 
   void Flush() {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    engine_.Flush();
+    engine_->Flush();
   }
 
-  double RemainingRadial() {
+  void Settle() {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return engine_.remaining_radial();
+    engine_->Settle();
+  }
+
+  void LoadMaps(const std::string& path) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    engine_->LoadMaps(path);
+  }
+
+  void ResumeMaps(const std::string& path, int64_t first_free_map_id) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    engine_->ResumeMaps(path, first_free_map_id);
+  }
+
+  void SaveMaps(const std::string& path, bool in_background) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    saver_.Start(engine_->Snapshot(), path);
+    if (!in_background) saver_.Wait();
+  }
+
+  void Checkpoint(const std::string& path) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    engine_->Settle();
+    const std::vector<uint8_t> bytes = engine_->Snapshot().Bytes();
+    WriteFileAtomically(path, bytes);
+    Restore(bytes);
+  }
+
+  void Restore(const std::string& path) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Restore(ReadWholeFile(path));
+  }
+
+  template <typename Value>
+  Value Ask(Value (Engine::*question)() const) {
+    const py::gil_scoped_release release;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return ((*engine_).*question)();
   }
 
   py::dict TakeMapUpdate() {
@@ -62,14 +106,24 @@ class LockedEngine {
     {
       const py::gil_scoped_release release;
       const std::lock_guard<std::mutex> lock(mutex_);
-      update = engine_.TakeUpdate();
+      update = engine_->TakeUpdate();
     }
     return ToDict(update);
   }
 
  private:
+  /// Nothing goes on in the restored engine but what the snapshot tells.
+  void Restore(const std::vector<uint8_t>& bytes) {
+    auto restored = std::make_unique<Engine>(camera_, options_);
+    restored->RestoreState(bytes);
+    engine_ = std::move(restored);
+  }
+
+  CameraModel camera_;
+  EngineOptions options_;
   std::mutex mutex_;
-  Engine engine_;
+  std::unique_ptr<Engine> engine_;
+  MapSaver saver_;
 };
 
 void BindOptions(py::module_& module) {
@@ -107,6 +161,8 @@ void BindOptions(py::module_& module) {
       .def_readwrite("depth_baseline_m", &EngineOptions::depth_baseline_m)
       .def_readwrite("wait_for_loops", &EngineOptions::wait_for_loops)
       .def_readwrite("camera_height_m", &EngineOptions::camera_height_m)
+      .def_readwrite("new_map_after_lost", &EngineOptions::new_map_after_lost)
+      .def_readwrite("localize_only", &EngineOptions::localize_only)
       .def_readwrite("opencv_threads", &EngineOptions::opencv_threads)
       .def_readwrite("semi_dense", &EngineOptions::semi_dense)
       .def_readwrite("map_id", &EngineOptions::map_id)
@@ -174,6 +230,16 @@ PYBIND11_MODULE(_engine, module) {
       .def("finish_frame", &LockedEngine::FinishFrame, py::arg("track_image").none(true), py::arg("object_ids"),
            py::arg("categories"), py::arg("motion_states"), py::arg("masks_fresh"))
       .def("flush", &LockedEngine::Flush)
+      .def("settle", &LockedEngine::Settle)
+      .def("load_maps", &LockedEngine::LoadMaps, py::arg("path"))
+      .def("resume_maps", &LockedEngine::ResumeMaps, py::arg("path"), py::arg("first_free_map_id"))
+      .def("save_maps", &LockedEngine::SaveMaps, py::arg("path"), py::arg("in_background"))
+      .def("checkpoint", &LockedEngine::Checkpoint, py::arg("path"))
+      .def("restore", py::overload_cast<const std::string&>(&LockedEngine::Restore), py::arg("path"))
       .def("take_map_update", &LockedEngine::TakeMapUpdate)
-      .def_property_readonly("remaining_radial", &LockedEngine::RemainingRadial);
+      .def_property_readonly("active_map_id", [](LockedEngine& engine) { return engine.Ask(&Engine::active_map_id); })
+      .def_property_readonly("next_map_id", [](LockedEngine& engine) { return engine.Ask(&Engine::next_map_id); })
+      .def_property_readonly("metric_scale", [](LockedEngine& engine) { return engine.Ask(&Engine::metric_scale); })
+      .def_property_readonly("remaining_radial",
+                             [](LockedEngine& engine) { return engine.Ask(&Engine::remaining_radial); });
 }

@@ -97,6 +97,24 @@ CameraModel CameraModel::WithDepthBaseline(double baseline_m) const {
   return camera;
 }
 
+std::vector<double> CameraModel::Parameters() const {
+  return {static_cast<double>(width_px_),
+          static_cast<double>(height_px_),
+          fx_px_,
+          fy_px_,
+          cx_px_,
+          cy_px_,
+          k1_,
+          k2_,
+          p1_,
+          p2_,
+          k3_,
+          k4_,
+          static_cast<double>(lens_),
+          baseline_m_,
+          right_is_virtual_ ? 1.0 : 0.0};
+}
+
 Eigen::Matrix3d CameraModel::Intrinsics() const {
   Eigen::Matrix3d intrinsics;
   intrinsics << fx_px_, 0, cx_px_, 0, fy_px_, cy_px_, 0, 0, 1;

@@ -39,6 +39,9 @@ class CameraModel {
   CameraModel WithDepthBaseline(double baseline_m) const;
   bool is_distorted() const { return is_distorted_; }
 
+  /// All that makes up the model: two cameras with the same numbers see alike.
+  std::vector<double> Parameters() const;
+
   /// The 3x3 calibration matrix of the undistorted camera.
   Eigen::Matrix3d Intrinsics() const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,10 @@ class Atlas {
   /// The number of the active map, or of the next one while there is none.
   int64_t active_map_id() const { return active_ != nullptr ? active_->map_id() : next_map_id_; }
   int64_t next_map_id() const { return next_map_id_; }
+  int64_t TakeMapId() { return next_map_id_++; }
+
+  /// Numbers below `next` are taken, even where their maps went into others.
+  void ReserveMapIds(int64_t next) { next_map_id_ = std::max(next_map_id_, next); }
 
   /// Takes in a map, which becomes the active one. Its number must not be taken.
   SlamMap& Add(std::unique_ptr<SlamMap> map);

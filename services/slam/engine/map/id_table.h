@@ -43,6 +43,9 @@ class IdTable {
     return *entries.back();
   }
 
+  /// Appends the place of an entry that was removed.
+  void AppendGap(int64_t number) { BlockOf(number).entries.push_back(nullptr); }
+
   /// Forgets an entry; its id is not used again.
   void Remove(int64_t id) {
     for (Block& block : blocks_) {

@@ -7,17 +7,17 @@
 
 namespace kinemap {
 
-SlamMap::SlamMap(int64_t map_id, const PyramidScales& scales) : map_id_(map_id), scales_(scales) {}
+SlamMap::SlamMap(int64_t map_id, const PyramidScales& scales) : map_id_(map_id), id_block_(map_id), scales_(scales) {}
 
 Keyframe& SlamMap::InsertKeyframe(const Frame& frame) {
   auto keyframe = std::make_unique<Keyframe>();
-  keyframe->id = last_keyframe_id_ = keyframes_.NextId(map_id_);
+  keyframe->id = last_keyframe_id_ = keyframes_.NextId(id_block_);
   keyframe->timestamp_ns = frame.timestamp_ns;
   keyframe->features = frame.features;
   keyframe->labels = frame.labels;
   keyframe->landmark_ids.assign(frame.size(), kNoId);
   keyframe->map_from_keyframe = frame.camera_from_map.Inverse();
-  Keyframe& inserted = keyframes_.Append(map_id_, std::move(keyframe));
+  Keyframe& inserted = keyframes_.Append(id_block_, std::move(keyframe));
   ++keyframe_count_;
   ++live_keyframes_;
   changed_keyframes_.insert(inserted.id);

@@ -41,6 +41,9 @@ class SlamMap {
   const PyramidScales& scales() const { return scales_; }
   const CovisibilityGraph& covisibility() const { return covisibility_; }
 
+  /// From now on new ids count up from number << 32, a block that nothing else takes ids from.
+  void set_id_block(int64_t number) { id_block_ = number; }
+
   // Keyframes.
   /// Takes over the frame's pose, features and matches, and observes the matched landmarks.
   Keyframe& InsertKeyframe(const Frame& frame);
@@ -115,11 +118,12 @@ class SlamMap {
   void Absorb(SlamMap&& other, const SimilarityTransform& this_from_other);
 
  private:
+  friend class MapCodec;  // reads and writes every member
   Keyframe& mutable_keyframe(KeyframeId id) { return *keyframes_.Find(id); }
   void Reanchor(Landmark* landmark, KeyframeId anchor_id);
   void SetObject(Landmark* landmark, const FeatureLabel& label);
 
-  int64_t map_id_;
+  int64_t map_id_, id_block_;
   PyramidScales scales_;
   CovisibilityGraph covisibility_;
   IdTable<Keyframe> keyframes_;

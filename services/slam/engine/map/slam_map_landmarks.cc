@@ -10,14 +10,14 @@ namespace kinemap {
 Landmark& SlamMap::CreateLandmark(const Eigen::Vector3d& position_in_map, KeyframeId anchor_id,
                                   const FeatureLabel& label) {
   auto landmark = std::make_unique<Landmark>();
-  landmark->id = landmarks_.NextId(map_id_);
+  landmark->id = landmarks_.NextId(id_block_);
   landmark->anchor_id = anchor_id;
   landmark->position_in_anchor = MapFromAnchor(anchor_id).Inverse() * position_in_map;
   landmark->first_keyframe_id = anchor_id;
   landmark->first_seen_ns = landmark->last_seen_ns = keyframe(anchor_id).timestamp_ns;
   mutable_keyframe(anchor_id).anchored.push_back(landmark->id);
   SetObject(landmark.get(), label);
-  Landmark& created = landmarks_.Append(map_id_, std::move(landmark));
+  Landmark& created = landmarks_.Append(id_block_, std::move(landmark));
   ++live_landmarks_;
   MarkChanged(created);
   return created;

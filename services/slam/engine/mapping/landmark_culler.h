@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "map/slam_map.h"
@@ -12,6 +13,10 @@ namespace kinemap {
 class LandmarkCuller {
  public:
   void Add(const std::vector<LandmarkId>& landmarks);
+
+  const std::vector<LandmarkId>& on_trial() const { return on_trial_; }
+  /// Others take the places of the landmarks on trial, which stay, untried.
+  void Replace(std::vector<LandmarkId> on_trial) { on_trial_ = std::move(on_trial); }
 
   /// Removes what failed, with `newest` the keyframe just inserted.
   void Cull(SlamMap* map, KeyframeId newest);

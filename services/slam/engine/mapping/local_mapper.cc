@@ -54,21 +54,28 @@ void LocalMapper::MergeIfDue(SlamMap* map, int64_t frame_index) {
   if (slot_.IsDue(frame_index)) Merge(map);
 }
 
-void LocalMapper::Settle(SlamMap* map) {
-  if (!slot_.IsFree()) Merge(map);
-}
-
 void LocalMapper::Merge(SlamMap* map) {
   WriteBackBundle(slot_.Take(), map);
   map->UpdateCovisibility(newest_);
   keyframe_culler_.Cull(map, newest_);
 }
 
+void LocalMapper::Settle(SlamMap* map) {
+  if (!slot_.IsFree()) Merge(map);
+}
+
+void LocalMapper::Leave(SlamMap* map) {
+  FinishMapping();
+  Settle(map);
+  landmark_culler_.Replace({});
+  newest_ = kNoId;
+}
+
 void LocalMapper::Finish(SlamMap* map) {
   FinishMapping();
   if (!slot_.IsFree()) Merge(map);
-  if (newest_ == kNoId) return;
   const std::vector<KeyframeId> live = map->LiveKeyframes();
+  if (live.size() <= 2) return;  // adjusted when it was made
   const size_t left_out = live.size() - std::min(live.size(), static_cast<size_t>(options_.final_keyframes));
   BundleProblem problem = CopyBundleProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
   SolveBundle(camera_, options_.final_bundle, &problem);

@@ -3,6 +3,8 @@
 
 #include <future>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "mapping/keyframe_culler.h"
 #include "mapping/landmark_culler.h"
@@ -53,11 +55,18 @@ class LocalMapper {
   /// Merges what is pending, whatever frame it is due: nothing else may move many keyframes before.
   void Settle(SlamMap* map);
 
+  /// Settles, and is done with this map until a keyframe comes.
+  void Leave(SlamMap* map);
+
+  /// All that a settled mapper carries over to the next keyframe.
+  const std::vector<LandmarkId>& on_trial() const { return landmark_culler_.on_trial(); }
+  void Restore(std::vector<LandmarkId> on_trial) { landmark_culler_.Replace(std::move(on_trial)); }
+
   /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more,
   /// together with the radial distortion that the calibration left.
   void Finish(SlamMap* map);
 
-  /// What Finish found; 0 before.
+  /// What Finish found last; 0 before.
   double remaining_radial() const { return remaining_radial_; }
 
  private:

@@ -17,6 +17,9 @@ class ObjectStates {
   /// `rows` are a frame's objects with measured states. Returns how many landmarks ended.
   int Update(const std::vector<ObjectRow>& rows, int64_t timestamp_ns, SlamMap* map);
 
+  const std::map<uint32_t, MotionState>& states() const { return state_of_object_; }
+  void Restore(const std::map<uint32_t, MotionState>& states) { state_of_object_ = states; }
+
  private:
   static int End(uint32_t object_id, int64_t timestamp_ns, SlamMap* map);
   static void Decide(uint32_t object_id, SlamMap* map);

@@ -29,7 +29,17 @@ void CameraTracker::Start(const SlamMap& map, const Frame& frame, const std::opt
   motion_model_.Reset();
   if (previous) motion_model_.Update(*previous, frame.camera_from_map);
   lost_frames_ = 0;
+  frames_since_relocalization_ = TrackerState().frames_since_relocalization;
   Remember(map, frame);
+}
+
+void CameraTracker::Restore(const TrackerState& state) {
+  last_ = state.last;
+  last_from_reference_ = state.last_from_reference;
+  last_scale_ = state.last_scale;
+  motion_model_.Restore(state.velocity);
+  lost_frames_ = state.lost_frames;
+  frames_since_relocalization_ = state.frames_since_relocalization;
 }
 
 void CameraTracker::FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id) {
@@ -62,6 +72,22 @@ bool CameraTracker::TrackReferenceKeyframe(const SlamMap& map, Frame* frame) con
   frame->camera_from_map = last_.camera_from_map;
   if (MatchKeyframe(map, reference, kReferenceMatchRatio, frame) < kLeastReferenceMatches) return false;
   return solver_.Solve(map, frame).inliers >= options_.min_pose_inliers;
+}
+
+TrackedPose CameraTracker::Recover(SlamMap* map, int lost_frames, Frame* frame) {
+  TrackedPose result;
+  const auto start = std::chrono::steady_clock::now();
+  const Eigen::Vector3d newest = map->MapFromKeyframe(map->last_keyframe_id()).translation;
+  result.relocalized = relocalizer_.Relocalize(*map, newest, lost_frames, frame);
+  result.match_ms = MillisecondsSince(start);
+  if (!result.relocalized) return result;
+  result.estimate = local_map_tracker_.Track(map, kRelocalizedRadiusFactor, frame);
+  result.tracked = result.estimate.inliers >= options_.min_relocalized_inliers;
+  result.local_map_ms = MillisecondsSince(start) - result.match_ms;
+  if (!result.tracked) return result;
+  Start(*map, *frame, std::nullopt);
+  frames_since_relocalization_ = 0;
+  return result;
 }
 
 TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {

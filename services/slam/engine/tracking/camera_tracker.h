@@ -31,6 +31,16 @@ struct TrackedPose {
   double match_ms = 0, local_map_ms = 0;
 };
 
+/// What the tracker carries from one frame to the next.
+struct TrackerState {
+  Frame last;
+  RigidTransform last_from_reference;
+  double last_scale = 1;
+  std::optional<RigidTransform> velocity;  ///< current camera from last camera
+  int lost_frames = 0;
+  int frames_since_relocalization = 1 << 20;
+};
+
 /// Follows the camera from frame to frame: constant velocity, else the reference keyframe, else relocalisation; then
 /// the local map.
 class CameraTracker {
@@ -41,6 +51,10 @@ class CameraTracker {
   /// Fills in the frame's pose, matches and reference keyframe.
   TrackedPose Track(SlamMap* map, Frame* frame);
 
+  /// Looks for a camera, lost `lost_frames` frames ago, in a map it need not have been in before. When it is found
+  /// there, it is followed from this frame on.
+  TrackedPose Recover(SlamMap* map, int lost_frames, Frame* frame);
+
   /// Starts following from a frame whose pose is known; `previous` (camera_from_map of the frame before) gives a speed.
   void Start(const SlamMap& map, const Frame& frame, const std::optional<RigidTransform>& previous);
 
@@ -49,6 +63,12 @@ class CameraTracker {
 
   /// The map's unit changed: what was one of its units is now `factor` of them.
   void ChangeUnits(double factor) { motion_model_.ChangeUnits(factor); }
+
+  TrackerState state() const {
+    return {last_,        last_from_reference_,        last_scale_, motion_model_.velocity(),
+            lost_frames_, frames_since_relocalization_};
+  }
+  void Restore(const TrackerState& state);
 
   int frames_since_relocalization() const { return frames_since_relocalization_; }
 

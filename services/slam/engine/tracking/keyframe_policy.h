@@ -4,7 +4,7 @@
 namespace kinemap {
 
 struct KeyframePolicyOptions {
-  int frames_after_relocalization = 20;
+  int frames_after_relocalization = 5;
   int longest_gap_frames = 20;  ///< after so many frames a busy mapper no longer holds a keyframe back
   int min_tracked = 50;
   double max_reference_ratio = 0.9;  ///< of the points the reference keyframe tracks

@@ -37,6 +37,11 @@ void MapInitializer::StartFrom(const Frame& frame) {
   matcher_.emplace(frame);
 }
 
+void MapInitializer::StartAgain() {
+  reference_.reset();
+  reason_ = "no frame yet";
+}
+
 std::optional<InitialMap> MapInitializer::Try(const Frame& current, RandomEngine& random) {
   if (!reference_) {
     StartFrom(current);

@@ -39,6 +39,9 @@ class MapInitializer {
   /// Nothing while it waits; reason() then says what for.
   std::optional<InitialMap> Try(const Frame& current, RandomEngine& random);
 
+  /// The next frame becomes the first view.
+  void StartAgain();
+
   const std::string& reason() const { return reason_; }
 
  private:

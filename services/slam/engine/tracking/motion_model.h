@@ -21,6 +21,9 @@ class MotionModel {
   void ChangeUnits(double factor) {
     if (velocity_) velocity_->translation *= factor;
   }
+  /// Current camera from last camera; as another motion model knew it.
+  void Restore(const std::optional<RigidTransform>& velocity) { velocity_ = velocity; }
+  const std::optional<RigidTransform>& velocity() const { return velocity_; }
   bool IsKnown() const { return velocity_.has_value(); }
   RigidTransform Predict(const RigidTransform& last) const { return *velocity_ * last; }
 

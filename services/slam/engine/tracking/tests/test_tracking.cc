@@ -29,7 +29,7 @@ TEST(KeyframePolicy, NeedsEveryConditionOfTheThesis) {
   const TrackingQuality due{1000, 3, true, 100, 200};
   EXPECT_TRUE(policy.NeedsKeyframe(due));
   TrackingQuality quality = due;
-  quality.frames_since_relocalization = 19;
+  quality.frames_since_relocalization = 4;
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
   quality = due;
   quality.mapper_is_free = false;

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "storage/map_snapshot.h"
+
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "storage/feature_codec.h"
+
+namespace kinemap {
+namespace {
+
+constexpr char kCamera[] = "camera", kMaps[] = "maps", kFeatures[] = "features";
+constexpr double kSameParameter = 1e-9;
+
+/// Everything that observations in the map depend on besides the images.
+std::vector<double> EyeOf(const CameraModel& camera, const PyramidScales& scales) {
+  std::vector<double> eye = camera.Parameters();
+  eye.push_back(scales.levels());
+  eye.push_back(scales.scale(scales.levels() - 1));
+  return eye;
+}
+
+std::string List(const std::vector<double>& values) {
+  std::ostringstream text;
+  for (const double value : values) text << (text.tellp() > 0 ? " " : "") << value;
+  return text.str();
+}
+
+const std::vector<uint8_t>& Find(const Sections& sections, const char* name) {
+  const auto found = sections.find(name);
+  if (found == sections.end()) throw MapFileError("damaged: without its section '" + std::string(name) + "'");
+  return found->second;
+}
+
+void CheckEye(const Sections& sections, const std::vector<double>& expected) {
+  std::vector<double> eye;
+  ByteReader(Find(sections, kCamera))(eye);
+  bool same = eye.size() == expected.size();
+  for (size_t i = 0; same && i < eye.size(); ++i) {
+    same = std::abs(eye[i] - expected[i]) <= kSameParameter * std::max(1.0, std::abs(expected[i]));
+  }
+  if (same) return;
+  throw MapFileError("was made with another camera or pyramid (width height fx fy cx cy ... levels scale): expected " +
+                     List(expected) + ", got " + List(eye));
+}
+
+}  // namespace
+
+MapSnapshot::MapSnapshot(const Atlas& atlas, const CameraModel& camera) {
+  ByteWriter eye, maps;
+  eye(EyeOf(camera, atlas.scales()));
+  sections_[kCamera] = std::move(eye.bytes());
+  maps(atlas.next_map_id(), atlas.active() == nullptr ? int64_t{-1} : atlas.active()->map_id(),
+       static_cast<uint64_t>(atlas.maps().size()));
+  for (const auto& map : atlas.maps()) {
+    MapCodec::Write(*map, &maps);
+    for (const KeyframeId id : map->LiveKeyframes()) features_[id] = map->keyframe(id).features;
+  }
+  sections_[kMaps] = std::move(maps.bytes());
+}
+
+std::vector<uint8_t> MapSnapshot::Bytes() const {
+  ByteWriter features;
+  features(static_cast<uint64_t>(features_.size()));
+  for (const auto& [id, of_keyframe] : features_) {
+    features(id);
+    WriteFeatures(*of_keyframe, &features);
+  }
+  Sections sections = sections_;
+  sections[kFeatures] = std::move(features.bytes());
+  return PackSections(sections);
+}
+
+Sections ReadMaps(const std::vector<uint8_t>& bytes, const CameraModel& camera, Atlas* atlas) {
+  Sections sections = UnpackSections(bytes);
+  CheckEye(sections, EyeOf(camera, atlas->scales()));
+  FeaturesByKeyframe features;
+  ByteReader feature_reader(Find(sections, kFeatures));
+  const size_t keyframes = feature_reader.TakeCount();
+  for (size_t i = 0; i < keyframes; ++i) {
+    KeyframeId id = kNoId;
+    feature_reader(id);
+    features[id] = ReadFeatures(camera, atlas->scales().levels(), &feature_reader);
+  }
+  sections.erase(kFeatures);
+  ByteReader reader(Find(sections, kMaps));
+  int64_t next_map_id = 0, active = -1;
+  reader(next_map_id, active);
+  const size_t maps = reader.TakeCount();
+  for (size_t i = 0; i < maps; ++i) {
+    std::unique_ptr<SlamMap> map = MapCodec::Read(atlas->scales(), features, &reader);
+    if (atlas->Find(map->map_id()) != nullptr) throw MapFileError("damaged: holds a map twice");
+    atlas->Add(std::move(map));
+  }
+  if (!reader.IsAtEnd()) throw MapFileError("damaged: goes on after its last map");
+  if (next_map_id < 0 || next_map_id > INT32_MAX) throw MapFileError("damaged: number of the next map");
+  atlas->ReserveMapIds(next_map_id);
+  atlas->Deactivate();
+  if (active >= 0) atlas->Activate(active);
+  return sections;
+}
+
+}  // namespace kinemap
