@@ -4,7 +4,8 @@
 namespace kinemap {
 
 struct KeyframePolicyOptions {
-  int frames_after_relocalization = 5;
+  int frames_after_relocalization = 20;
+  int urgent_tracked = 150;     ///< with fewer no keyframe waits for that: the camera would soon be lost again
   int longest_gap_frames = 20;  ///< after so many frames a busy mapper no longer holds a keyframe back
   int min_tracked = 50;
   double max_reference_ratio = 0.9;  ///< of the points the reference keyframe tracks
@@ -30,7 +31,8 @@ class KeyframePolicy {
 
   bool NeedsKeyframe(const TrackingQuality& quality) const {
     const bool wants_close = quality.close_tracked < options_.min_close && quality.close_new > options_.min_new_close;
-    return quality.frames_since_relocalization >= options_.frames_after_relocalization &&
+    const bool urgent = quality.tracked < options_.urgent_tracked;
+    return (urgent || quality.frames_since_relocalization >= options_.frames_after_relocalization) &&
            (quality.mapper_is_free || quality.frames_since_keyframe >= options_.longest_gap_frames) &&
            quality.tracked >= options_.min_tracked &&
            (wants_close || quality.tracked < options_.max_reference_ratio * quality.reference_tracked);

@@ -26,11 +26,13 @@ double CenterError(const Frame& frame, const Eigen::Vector3d& center) {
 
 TEST(KeyframePolicy, NeedsEveryConditionOfTheThesis) {
   const KeyframePolicy policy({});
-  const TrackingQuality due{1000, 3, true, 100, 200};
+  const TrackingQuality due{1000, 3, true, 160, 200};
   EXPECT_TRUE(policy.NeedsKeyframe(due));
   TrackingQuality quality = due;
-  quality.frames_since_relocalization = 4;
+  quality.frames_since_relocalization = 19;
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
+  quality.tracked = 149;
+  EXPECT_TRUE(policy.NeedsKeyframe(quality)) << "the camera is about to be lost again";
   quality = due;
   quality.mapper_is_free = false;
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
