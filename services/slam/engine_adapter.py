@@ -87,6 +87,7 @@ class SlamEngine:
         A frame begun but not finished is replaced. InputError when a size is not the calibration's, a right image comes
         to an engine that does not know the right camera, or the time is not after the last frame's.
         """
+        self._depth = depth
         with _input_errors():
             self._engine.begin_frame(
                 image.timestamp_ns,

@@ -11,7 +11,7 @@ from schemas.records.mapped_objects import MappedObject
 from schemas.records.objects import MotionState, Objects, ObjectTrack
 from services.slam.object_tracks.motion_filter import MotionFilter
 from services.slam.object_tracks.sighting import CameraView, Outline, Sighting, outline_by_depth, sight
-from services.slam.object_tracks.size_priors import Size, usual_size
+from services.slam.object_tracks.size_priors import Size, usual_size, wheel_inset_m
 
 Array = npt.NDArray[np.float64]
 
@@ -78,7 +78,8 @@ class ObjectTracks:
         stands = row.motion_state in _STANDING
         track = self._tracks.get(row.object_id)
         size = usual_size(row.category) if track is None else track.size
-        seen = sight(outline, view, size, None if track is None else track.heading_rad)
+        heading_rad = None if track is None else track.heading_rad
+        seen = sight(outline, view, size, heading_rad, wheel_inset_m(row.category, size))
         if track is None:
             first = MotionFilter(seen.center[:2], seen.covariance, _SPEED_SIGMA_M_S)
             track = _Track(first, timestamp_ns, size, float(seen.center[2]))

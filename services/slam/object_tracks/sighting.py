@@ -70,11 +70,12 @@ def outline_by_depth(mask: npt.NDArray[np.bool_], depth_m: npt.NDArray[np.float3
     return Outline(near * np.column_stack((rays, np.ones(3))), by_depth=True)
 
 
-def sight(outline: Outline, view: CameraView, size: Size, heading_rad: float | None) -> Sighting:
+def sight(outline: Outline, view: CameraView, size: Size, heading_rad: float | None, inset_m: float = 0.0) -> Sighting:
     """The place of an object whose outline is seen.
 
     Its middle lies on the middle line of sight, behind the nearest point by half of what an object of this size and
-    heading (map frame; None: what its width in the image tells) is deep.
+    heading (map frame; None: what its width in the image tells) is deep. What stands on wheels touches the road
+    `inset_m` inside of its end.
     """
     rotation = view.map_from_camera[:3, :3]
     ends = (outline.points @ rotation.T)[:, :2]  # map directions, from the camera
@@ -87,7 +88,7 @@ def sight(outline: Outline, view: CameraView, size: Size, heading_rad: float | N
     extent_m = float(abs(slopes[0] - slopes[2]) * near_m)
     turn = _turn_of(extent_m, size) if heading_rad is None else heading_rad - math.atan2(sight_line[1], sight_line[0])
     deep_m = size.length * abs(math.cos(turn)) + size.width * abs(math.sin(turn))
-    range_m = near_m + deep_m / 2
+    range_m = near_m + deep_m / 2 - (0.0 if outline.by_depth else inset_m * abs(math.cos(turn)))
     center = np.append(view.map_from_camera[:2, 3] + range_m * sight_line, 0.0)
     center[2] = view.map_from_camera[2, 3] + float((rotation @ outline.points[1])[2])
     if outline.by_depth:

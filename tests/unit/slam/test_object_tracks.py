@@ -36,7 +36,8 @@ def _seen(center_x_m: float, camera_x_m: float, state: MotionState, time_s: floa
     image = np.zeros(SHAPE, np.uint32)
     image[round(top) : round(low) + 1, round(CX - half) : round(CX + half) + 1] = 3
     row = ObjectTrack(3, "car", 1.0, state, 0.9, (CX - half, top, 2 * half, low - top), 1)
-    contact = np.array([[side * CAR_WIDTH_M / 2, HEIGHT_M, rear_m] for side in (-1, 0, 1)])
+    wheels_m = rear_m + 0.2 * CAR_LENGTH_M
+    contact = np.array([[side * CAR_WIDTH_M / 2, HEIGHT_M, wheels_m] for side in (-1, 0, 1)])
     return Objects(round(time_s * 1e9), image, (row,)), contact, rear_m
 
 
