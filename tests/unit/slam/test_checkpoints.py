@@ -58,7 +58,7 @@ def test_realtime_finds_its_map_again_and_uses_no_id_twice(room: TexturedRoom, t
     drive.take(room.render(n)[0] for n in range(30))
     drive.service.close()
     before = drive.keyframes_by_map()[0]
-    drive.fall_and_rise().take(room.render(n)[0] for n in range(24, 60))
+    drive.fall_and_rise().take(room.render(n)[0] for n in range(24, 38))
     after = drive.tracked[30:]
     assert all(frame.state is TrackingState.TRACKING and frame.map_id == 0 for frame in after)
     first_update = set(drive.updates[30].keyframe_id.tolist())

@@ -5,7 +5,8 @@ namespace kinemap {
 
 struct KeyframePolicyOptions {
   int frames_after_relocalization = 20;
-  int urgent_tracked = 150;     ///< with fewer no keyframe waits for that: the camera would soon be lost again
+  int urgent_tracked =
+      250;  ///< with fewer no keyframe waits for that: at the edge of the map the camera would be lost again
   int longest_gap_frames = 20;  ///< after so many frames a busy mapper no longer holds a keyframe back
   int min_tracked = 50;
   double max_reference_ratio = 0.9;  ///< of the points the reference keyframe tracks

@@ -26,12 +26,12 @@ double CenterError(const Frame& frame, const Eigen::Vector3d& center) {
 
 TEST(KeyframePolicy, NeedsEveryConditionOfTheThesis) {
   const KeyframePolicy policy({});
-  const TrackingQuality due{1000, 3, true, 160, 200};
+  const TrackingQuality due{1000, 3, true, 260, 400};
   EXPECT_TRUE(policy.NeedsKeyframe(due));
   TrackingQuality quality = due;
   quality.frames_since_relocalization = 19;
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
-  quality.tracked = 149;
+  quality.tracked = 249;
   EXPECT_TRUE(policy.NeedsKeyframe(quality)) << "the camera is about to be lost again";
   quality = due;
   quality.mapper_is_free = false;
@@ -43,9 +43,9 @@ TEST(KeyframePolicy, NeedsEveryConditionOfTheThesis) {
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
   quality.tracked = 50;
   EXPECT_TRUE(policy.NeedsKeyframe(quality));
-  quality.tracked = 180;
+  quality.tracked = 360;
   EXPECT_FALSE(policy.NeedsKeyframe(quality));
-  quality.tracked = 179;
+  quality.tracked = 359;
   EXPECT_TRUE(policy.NeedsKeyframe(quality));
 }
 
