@@ -63,7 +63,7 @@ class EngineOptions:
     radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
     threads: int  # 2, of feature extraction; results are the same with any number
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
-    right_shift_sigma_px: float  # 0.1: the same of the right image's columns, found with it; 0: the pair is exact
+    right_shift_sigma_px: float  # 0.05: the same of the right image's columns, found with it; 0: the pair is exact
     depth_baseline_m: float  # 0.5: of the stereo pair that a depth camera is as good as, at 1 px
     wait_for_loops: bool  # True; False: a loop is merged when it is solved, not at a fixed frame (realtime)
     camera_height_m: float  # 0: unknown; else above the road, metres: one camera's map becomes metric by it

@@ -24,13 +24,13 @@ struct EngineOptions {
   double radial_sigma = 0.01;       ///< distortion calibration may have left, found at the end; 0: calibration is exact
   int threads = 2;                  ///< of feature extraction; results are the same with any number
   bool loop_closing = true;         ///< recognises places seen before; needs a vocabulary
-  double right_shift_sigma_px = 0.1;  ///< the same of the right image's columns, found with the distortion
-  double depth_baseline_m = 0.5;      ///< of the pair (1 px) that a depth camera without a right image is as good as
-  bool wait_for_loops = true;         ///< false: a loop is merged when it is solved, not at a fixed frame (realtime)
-  int opencv_threads = 1;             ///< for the whole process; 0 leaves OpenCV as it is
-  bool semi_dense = false;            ///< inverse depths of every keyframe's gradient pixels, in the background
-  int64_t map_id = 0;                 ///< ids start at map_id << 32; 0 <= map_id < 2^31
-  std::string vocabulary_path;        ///< of the places' words; empty: no place is recognised but by its looks nearby
+  double right_shift_sigma_px = 0.05;  ///< the same of the right image's columns, found with the distortion
+  double depth_baseline_m = 0.5;       ///< of the pair (1 px) that a depth camera without a right image is as good as
+  bool wait_for_loops = true;          ///< false: a loop is merged when it is solved, not at a fixed frame (realtime)
+  int opencv_threads = 1;              ///< for the whole process; 0 leaves OpenCV as it is
+  bool semi_dense = false;             ///< inverse depths of every keyframe's gradient pixels, in the background
+  int64_t map_id = 0;                  ///< ids start at map_id << 32; 0 <= map_id < 2^31
+  std::string vocabulary_path;         ///< of the places' words; empty: no place is recognised but by its looks nearby
   double camera_height_m = 0;   ///< of the camera above the road, with one camera; 0: unknown, scale stays arbitrary
   int new_map_after_lost = 50;  ///< lost frames after which another map is begun; the old one is kept
   bool localize_only = false;   ///< only finds the camera in the loaded maps, which stay as they are
