@@ -100,7 +100,9 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   const auto start = std::chrono::steady_clock::now();
   ++frames_since_relocalization_;
   // The mapper may have moved the keyframes since, a closed loop changed their scale: the last frame goes along.
-  motion_model_.Rescale(map->MapFromAnchor(last_.reference_keyframe_id).scale / last_scale_);
+  const double scale = map->MapFromAnchor(last_.reference_keyframe_id).scale;
+  motion_model_.Rescale(scale / last_scale_);
+  last_scale_ = scale;
   last_.camera_from_map = map->CameraFromMap(last_from_reference_, last_.reference_keyframe_id);
   frame->reference_keyframe_id = map->LiveKeyframe(last_.reference_keyframe_id);
 
