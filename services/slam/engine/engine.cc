@@ -76,6 +76,7 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       scales_(options.pyramid_levels, options.pyramid_factor),
       extractor_({options.features, {options.fast_threshold, options.fast_threshold_low}, options.threads}, scales_,
                  camera_),
+      feature_budget_(options.features),
       initializer_({}, camera_),
       map_builder_(camera_, scales_),
       single_frame_builder_(camera_, scales_),
@@ -107,6 +108,7 @@ void Engine::BeginFrame(int64_t timestamp_ns, const cv::Mat& image, const cv::Ma
   }
   const Stopwatch stopwatch;
   mapper_.StartMapping();
+  extractor_.SetWanted(feature_budget_.next());
   FrameFeaturesPtr features = extractor_.Extract(image, right, depth_m);
   RoadView road;
   if (ground_scale_ && right.empty() && depth_m.empty()) road = ground_scale_->viewer().Make(image);
@@ -125,9 +127,10 @@ Frame Engine::MakeFrame(const FrameObjects& objects) {
   Frame frame;
   frame.timestamp_ns = begun_->timestamp_ns;
   frame.features = begun_->features;
-  frame.labels =
-      ObjectLabels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh, options_.mask_border_px)
-          .LabelsOf(frame.features->keypoints);
+  frame.labels = ObjectLabels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh,
+                              options_.mask_border_px, scales_)
+                     .LabelsOf(frame.features->keypoints);
+  feature_budget_.Observe(frame.labels);
   frame.ForgetMatches();
   return frame;
 }

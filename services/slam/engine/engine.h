@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine_options.h"
+#include "features/feature_budget.h"
 #include "features/rig_extractor.h"
 #include "ground/contact_placer.h"
 #include "ground/ground_scale.h"
@@ -119,6 +120,7 @@ class Engine {
   EngineOptions options_;
   PyramidScales scales_;
   RigExtractor extractor_;
+  FeatureBudget feature_budget_;
   MapInitializer initializer_;
   InitialMapBuilder map_builder_;
   SingleFrameMapBuilder single_frame_builder_;

@@ -50,16 +50,19 @@ def main() -> None:
     parser.add_argument("--picture", type=Path, help="PNG of the trajectories beside the truth")
     parser.add_argument("--brief", action="store_true", help="one line a pass")
     given = parser.parse_args()
-    options = {name: float(value) for name, value in (assignment.split("=") for assignment in given.option)}
+    options: dict[str, float | str] = {
+        name: float(value) for name, value in (assignment.split("=") for assignment in given.option)
+    }
     passes = []
     for sequence in given.sequences:
         part = SequencePart(sequence, given.start, given.frames, images=given.images, right_images=given.right)
         name = f"{sequence.resolve().parent.parent.name}/{sequence.name}"
         passes += [EnginePass((part,), stage, options, f"{name} {stage}") for stage in given.stage or ["moving"]]
-    reports = run_passes(passes, given.jobs)
-    for report in reports:
+    reports = []
+    for report in run_passes(passes, given.jobs):
+        reports.append(report)
         if given.brief:
-            print(report.name, json.dumps(figures(report)))
+            print(report.name, json.dumps(figures(report)), flush=True)
             continue
         print(report.name, json.dumps(figures(report), indent=1))
         for index, reason in enumerate(report.reasons):

@@ -4,7 +4,7 @@
 import hashlib
 import resource
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from multiprocessing import get_context
@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from services.evaluation.trajectory.alignment import MINIMUM_POSES, Alignment, align
 from services.slam import _engine
-from tests.benchmark.slam.engine_run import TRACKING, EngineRun, run_parts
+from services.slam.vocabulary import SHIPPED_VOCABULARY
+from tests.benchmark.slam.engine_run import EngineRun, run_parts
 from tests.benchmark.slam.sequence_part import SequencePart
 
 Array = npt.NDArray[np.float64]
@@ -27,13 +28,14 @@ class EnginePass:
 
     parts: tuple[SequencePart, ...]
     stage: str = "moving"
-    options: dict[str, float] = field(default_factory=dict)
+    options: dict[str, float | str] = field(default_factory=dict)
     name: str = ""
 
     def engine_options(self) -> _engine.EngineOptions:
         """AttributeError for a name that EngineOptions does not have."""
         options = _engine.EngineOptions()
         options.stage = getattr(_engine.Stage, self.stage)
+        options.vocabulary_path = str(SHIPPED_VOCABULARY)
         for name, value in self.options.items():
             setattr(options, name, type(getattr(options, name))(value))
         return options
@@ -61,11 +63,14 @@ class PassReport:
     culled: int
     landmarks: dict[int, int]
     wall_ms: Array
+    rss_mb: Array
     stage_ms: dict[str, float]
     states: npt.NDArray[np.int64]
     reasons: list[str]
     digest: str
     peak_rss_mb: float
+    part_starts: list[int]
+    """index of each part's first frame"""
     indices: list[int]
     centers: Array
     """(N, 3), aligned with the truth"""
@@ -88,7 +93,8 @@ def errors_m(centers: Array, truth: Array, alignment: Alignment) -> tuple[float,
 
 def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> PassReport:
     """The figures of a run over these parts."""
-    truth = np.concatenate([part.true_poses() for part in parts])[:, :3, 3]
+    part_poses = [part.true_poses() for part in parts]
+    truth = np.concatenate(part_poses)[:, :3, 3]
     indices, centers = run.centers()
     told, told_centers = run.online_centers()
     ate_m, scale, aligned = errors_m(centers, truth[indices], Alignment.SIM3)
@@ -108,11 +114,13 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         culled=len(run.culled),
         landmarks=dict(sorted(Counter(run.landmarks.values()).items())),
         wall_ms=np.array(run.wall_ms),
+        rss_mb=np.array(run.rss_mb),
         stage_ms={stage: round(float(np.mean([row[stage] for row in stages])), 1) for stage in stages[0]},
         states=np.array([result.state for result in run.results]),
         reasons=[result.reason for result in run.results],
         digest=hashlib.sha256(run.digest.digest()).hexdigest()[:16],
         peak_rss_mb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        part_starts=np.cumsum([0, *(len(poses) for poses in part_poses)])[:-1].tolist(),
         indices=indices,
         centers=aligned,
         true_centers=truth,
@@ -125,12 +133,7 @@ def run_pass(given: EnginePass) -> PassReport:
     return report(run_parts(given.parts, given.engine_options()), given.parts, given.name)
 
 
-def run_passes(given: Sequence[EnginePass], jobs: int = 1) -> list[PassReport]:
+def run_passes(given: Sequence[EnginePass], jobs: int = 1) -> Iterator[PassReport]:
     """Run each in a process of its own, so that its peak of memory is its own; `jobs` at a time, in order."""
     with ProcessPoolExecutor(jobs, get_context("spawn"), max_tasks_per_child=1) as pool:
-        return list(pool.map(run_pass, given))
-
-
-def lost_frames(report_of: PassReport) -> int:
-    """Frames since initialisation that have no pose of their own."""
-    return int((report_of.states[max(report_of.initialized_at, 0) :] != TRACKING).sum())
+        yield from pool.map(run_pass, given)

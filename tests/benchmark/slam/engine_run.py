@@ -2,10 +2,12 @@
 """One pass of the engine over frames, without a bus, and what came of it."""
 
 import hashlib
+import resource
 import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,6 +39,8 @@ class EngineRun:
     """landmark -> state"""
     results: list[_engine.TrackingResult] = field(default_factory=list)
     wall_ms: list[float] = field(default_factory=list)
+    rss_mb: list[float] = field(default_factory=list)
+    """resident memory of this process after each frame"""
     digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
     on_update: Callable[[Update], None] | None = None
     """gets every map update, for what is not kept here"""
@@ -49,6 +53,7 @@ class EngineRun:
         result = self.engine.finish_frame(*objects, masks_fresh=True)
         self.wall_ms.append((time.perf_counter() - start) * 1e3)
         self.results.append(result)
+        self.rss_mb.append(resident_mb())
         if result.state == TRACKING:
             self.relative[index] = (result.reference_keyframe_id, result.camera_from_reference)
             self.digest.update(result.map_from_camera.tobytes())
@@ -110,6 +115,11 @@ class EngineRun:
             reference = int(update["frame_reference_keyframe_id"][row])
             pose = matrix_from_pose(update["frame_camera_from_reference"][row])
             self.relative[timestamp_ns // FRAME_NS - 1] = (reference, pose)
+
+
+def resident_mb() -> float:
+    """Resident memory of this process."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / 2**20
 
 
 def run_parts(

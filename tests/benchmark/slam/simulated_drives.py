@@ -30,7 +30,6 @@ KINDS = {
     "static": DriveKind(790, ("traffic=0",)),
     "heavy": DriveKind(1550, ("traffic=1",)),
     "second": DriveKind(700, ("traffic=0.3", "traffic_seed=99", "light=overcast", "lateral_offset_m=1.0")),
-    "rounds": DriveKind(10_000, ("traffic=0",)),
 }
 
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace kinemap {
 namespace {
@@ -32,11 +33,12 @@ FeatureLabel LabelInState(Stage stage, MotionState state, bool masks_fresh) {
 }  // namespace
 
 ObjectLabels::ObjectLabels(Stage stage, const cv::Mat& track_image, const std::vector<ObjectRow>& rows,
-                           bool masks_fresh, int border_px)
+                           bool masks_fresh, int border_px, const PyramidScales& scales)
     : stage_(stage),
       track_image_(track_image),
       unlisted_(LabelInState(stage, MotionState::kUndecided, masks_fresh)),
-      border_px_(border_px) {
+      border_px_(border_px),
+      scales_(scales) {
   for (const ObjectRow& row : rows) {
     FeatureLabel label = LabelInState(stage, row.state, masks_fresh);
     label.object_id = row.id;
@@ -49,13 +51,15 @@ uint32_t ObjectLabels::ObjectAt(int column, int row) const {
   return static_cast<uint32_t>(track_image_.at<int32_t>(row, column));
 }
 
-bool ObjectLabels::IsBorder(int column, int row, uint32_t object_id) const {
-  const int first_row = std::max(0, row - border_px_), last_row = std::min(track_image_.rows - 1, row + border_px_);
-  const int first_column = std::max(0, column - border_px_);
-  const int last_column = std::min(track_image_.cols - 1, column + border_px_);
-  for (int r = first_row; r <= last_row; ++r) {
-    for (int c = first_column; c <= last_column; ++c) {
-      if (ObjectAt(c, r) != object_id) return true;
+bool ObjectLabels::IsBorder(int column, int row, uint32_t object_id, double scale) const {
+  const auto out_of_tracking = [&](uint32_t id) { return LabelOfObject(id).role != FeatureRole::kTracked; };
+  const int border = static_cast<int>(std::lround(border_px_ * scale));
+  for (int r = std::max(0, row - border); r <= std::min(track_image_.rows - 1, row + border); ++r) {
+    for (int c = std::max(0, column - border); c <= std::min(track_image_.cols - 1, column + border); ++c) {
+      const uint32_t other = ObjectAt(c, r);
+      if (other == object_id) continue;
+      if (std::max(std::abs(r - row), std::abs(c - column)) <= border_px_) return true;
+      if (out_of_tracking(object_id) || out_of_tracking(other)) return true;
     }
   }
   return false;
@@ -75,7 +79,7 @@ FeatureLabel ObjectLabels::LabelOf(const Keypoint& keypoint) const {
   const int row = std::clamp(static_cast<int>(std::lround(keypoint.raw_px.y())), 0, track_image_.rows - 1);
   const uint32_t object_id = ObjectAt(column, row);
   FeatureLabel label = LabelOfObject(object_id);
-  if (IsBorder(column, row, object_id)) label.role = FeatureRole::kIgnored;
+  if (IsBorder(column, row, object_id, scales_.scale(keypoint.octave))) label.role = FeatureRole::kIgnored;
   return label;
 }
 

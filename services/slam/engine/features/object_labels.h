@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "features/keypoint.h"
+#include "features/pyramid_scales.h"
 
 namespace kinemap {
 
@@ -42,8 +43,10 @@ class ObjectLabels {
  public:
   /// `track_image` is CV_32S and must live as long as this; it may be empty: no objects. An id without a row counts as
   /// not decided. Masks that are not fresh make every object potentially dynamic, whatever its state.
+  /// The border is `border_px` wide for features of the finest octave, and grows with the scale of the others around
+  /// what stays out of tracking: a corner that an outline makes with what is behind it moves with the object.
   ObjectLabels(Stage stage, const cv::Mat& track_image, const std::vector<ObjectRow>& rows, bool masks_fresh,
-               int border_px);
+               int border_px, const PyramidScales& scales);
 
   FeatureLabel LabelOf(const Keypoint& keypoint) const;
   /// Of what shows an object, away from its border; id 0: background.
@@ -52,13 +55,14 @@ class ObjectLabels {
 
  private:
   uint32_t ObjectAt(int column, int row) const;
-  bool IsBorder(int column, int row, uint32_t object_id) const;
+  bool IsBorder(int column, int row, uint32_t object_id, double scale) const;
 
   Stage stage_;
   cv::Mat track_image_;
   std::unordered_map<uint32_t, FeatureLabel> label_of_object_;  // looked up only, never iterated
   FeatureLabel unlisted_;
   int border_px_;
+  PyramidScales scales_;
 };
 
 }  // namespace kinemap

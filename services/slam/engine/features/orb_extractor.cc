@@ -14,12 +14,16 @@ constexpr double kBlurSigmaPx = 2;
 
 OrbExtractor::OrbExtractor(const OrbOptions& options, const PyramidScales& scales)
     : scales_(scales), team_(std::make_unique<ThreadTeam>(options.threads)) {
+  for (int level = 0; level < scales.levels(); ++level) levels_.emplace_back(options.thresholds);
+  SetWanted(options.features);
+}
+
+void OrbExtractor::SetWanted(int features) {
   // Each level gets its share in proportion to its side, not its area: coarse levels carry the distant matches.
   double total = 0;
-  for (int level = 0; level < scales.levels(); ++level) total += 1 / scales.scale(level);
-  for (int level = 0; level < scales.levels(); ++level) {
-    levels_.emplace_back(options.thresholds);
-    levels_.back().features = static_cast<int>(std::lround(options.features / scales.scale(level) / total));
+  for (int level = 0; level < scales_.levels(); ++level) total += 1 / scales_.scale(level);
+  for (int level = 0; level < scales_.levels(); ++level) {
+    levels_[level].features = static_cast<int>(std::lround(features / scales_.scale(level) / total));
   }
 }
 

@@ -27,6 +27,9 @@ class OrbExtractor {
  public:
   OrbExtractor(const OrbOptions& options, const PyramidScales& scales);
 
+  /// Features wanted of the images from now on.
+  void SetWanted(int features);
+
   /// `image` is 8-bit grey of the camera's size. Pixels are those of level 0, undistorted; the grid is filled.
   /// `pyramid`, where given, gets the image of every level; they last until the next call.
   std::shared_ptr<FrameFeatures> Extract(const cv::Mat& image, const CameraModel& camera,

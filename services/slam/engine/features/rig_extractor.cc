@@ -11,6 +11,11 @@ RigExtractor::RigExtractor(const OrbOptions& options, const PyramidScales& scale
       stereo_matcher_(camera, scales),
       depth_reader_(camera) {}
 
+void RigExtractor::SetWanted(int features) {
+  extractor_.SetWanted(features);
+  right_extractor_.SetWanted(features);
+}
+
 FrameFeaturesPtr RigExtractor::Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth_m) {
   if (right.empty()) {
     const std::shared_ptr<FrameFeatures> features = extractor_.Extract(image, camera_);

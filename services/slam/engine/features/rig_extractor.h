@@ -16,6 +16,9 @@ class RigExtractor {
   /// The camera needs a baseline to use a right image or a depth image.
   RigExtractor(const OrbOptions& options, const PyramidScales& scales, const CameraModel& camera);
 
+  /// Features wanted of each image from now on.
+  void SetWanted(int features);
+
   /// 8-bit grey images of the camera's size; `right` and `depth_m` (CV_32F, metres, 0 or not a number where unknown)
   /// may be empty. Depth is read where stereo found none.
   FrameFeaturesPtr Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth_m);

@@ -15,7 +15,7 @@ PixelLabels::PixelLabels(Stage stage, const cv::Mat& track_image, const std::vec
     : labels_(2) {
   labels_[kNobody].role = FeatureRole::kIgnored;
   if (stage == Stage::kBase || track_image.empty()) return;
-  const ObjectLabels objects(stage, track_image, rows, masks_fresh, border_px);
+  const ObjectLabels objects(stage, track_image, rows, masks_fresh, border_px, PyramidScales(1, 1.2));
   std::map<uint32_t, uint8_t> index_of_object{{0, 0}};
   index_.create(track_image.size(), CV_8U);
   uint32_t last_object = 0;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kReferenceMatchRatio = 0.7;
 constexpr int kLeastReferenceMatches = 15;
+constexpr int kBlindNeighbors = 10;
 constexpr double kRelocalizedRadiusFactor = 5;
 
 double MillisecondsSince(std::chrono::steady_clock::time_point start) {
@@ -60,11 +61,27 @@ bool CameraTracker::TrackLastFrame(const SlamMap& map, Frame* frame) const {
   const RigidTransform predicted = motion_model_.Predict(last_.camera_from_map);
   for (const double factor : {1.0, 2.0}) {
     frame->camera_from_map = predicted;
-    if (MatchLastFrame(map, camera_, last_, factor * options_.motion_radius_px, frame) >= options_.min_motion_matches) {
-      return solver_.Solve(map, frame).inliers >= options_.min_pose_inliers;
+    if (MatchLastFrame(map, camera_, last_, factor * options_.motion_radius_px, frame) < options_.min_motion_matches) {
+      continue;
     }
+    if (solver_.Solve(map, frame).inliers >= options_.min_pose_inliers) return true;
   }
   return false;
+}
+
+bool CameraTracker::TrackBlindly(const SlamMap& map, Frame* frame) const {
+  if (!motion_model_.IsKnown()) return false;
+  RigidTransform predicted = last_.camera_from_map;
+  for (int i = 0; i <= lost_frames_; ++i) predicted = motion_model_.Predict(predicted);
+  frame->camera_from_map = predicted;
+  frame->ForgetMatches();
+  const KeyframeId reference = map.LiveKeyframe(last_.reference_keyframe_id);
+  int matches = ProjectKeyframe(map, camera_, reference, options_.motion_radius_px, kMaxHammingDistance, frame);
+  for (const KeyframeId neighbor : map.covisibility().Neighbors(reference, kBlindNeighbors)) {
+    matches += ProjectKeyframe(map, camera_, neighbor, options_.motion_radius_px, kMaxHammingDistance, frame);
+  }
+  if (matches < options_.min_motion_matches) return false;
+  return solver_.Solve(map, frame).inliers >= options_.min_pose_inliers;
 }
 
 bool CameraTracker::TrackReferenceKeyframe(const SlamMap& map, Frame* frame) const {
@@ -90,49 +107,53 @@ TrackedPose CameraTracker::Recover(SlamMap* map, int lost_frames, Frame* frame) 
   return result;
 }
 
+void CameraTracker::FollowLocalMap(SlamMap* map, Frame* frame, TrackedPose* result) const {
+  const auto start = std::chrono::steady_clock::now();
+  const bool recent = result->relocalized || frames_since_relocalization_ < options_.recent_frames;
+  result->estimate = local_map_tracker_.Track(map, result->relocalized ? kRelocalizedRadiusFactor : 1.0, frame);
+  const int needed = recent ? options_.min_relocalized_inliers : options_.min_local_inliers;
+  result->tracked = result->estimate.inliers >= needed;
+  result->reason.clear();
+  if (!result->tracked) {
+    result->reason = "lost: " + std::to_string(result->estimate.inliers) + " landmarks of the local map found, " +
+                     std::to_string(needed) + " needed";
+  }
+  result->local_map_ms += MillisecondsSince(start);
+}
+
 TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   TrackedPose result;
   const auto start = std::chrono::steady_clock::now();
   ++frames_since_relocalization_;
   // The mapper may have moved the keyframes since, a closed loop changed their scale: the last frame goes along.
-  motion_model_.Rescale(map->MapFromAnchor(last_.reference_keyframe_id).scale / last_scale_);
+  const double scale = map->MapFromAnchor(last_.reference_keyframe_id).scale;
+  motion_model_.Rescale(scale / last_scale_);
+  last_scale_ = scale;
   last_.camera_from_map = map->CameraFromMap(last_from_reference_, last_.reference_keyframe_id);
   frame->reference_keyframe_id = map->LiveKeyframe(last_.reference_keyframe_id);
 
-  bool found = false;
-  if (lost_frames_ == 0) found = TrackLastFrame(*map, frame) || TrackReferenceKeyframe(*map, frame);
-  if (!found) {
+  // What was lost a moment ago is likely to be seen again from where it was seen last.
+  if (lost_frames_ == 0 && TrackLastFrame(*map, frame)) FollowLocalMap(map, frame, &result);
+  const bool lost_recently = lost_frames_ <= options_.recent_frames;
+  if (!result.tracked && lost_recently && TrackReferenceKeyframe(*map, frame)) FollowLocalMap(map, frame, &result);
+  if (!result.tracked && lost_recently && TrackBlindly(*map, frame)) FollowLocalMap(map, frame, &result);
+  if (!result.tracked) {
     const Eigen::Vector3d last_center = last_.camera_from_map.Inverse().translation;
-    found = relocalizer_.Relocalize(*map, last_center, lost_frames_, frame);
-    result.relocalized = found;
+    result.relocalized = relocalizer_.Relocalize(*map, last_center, lost_frames_, frame);
+    if (result.relocalized) FollowLocalMap(map, frame, &result);
   }
-  result.match_ms = MillisecondsSince(start);
-  const auto local_start = std::chrono::steady_clock::now();
-  if (found) {
-    const bool recent = result.relocalized || frames_since_relocalization_ < options_.recent_frames;
-    result.estimate = local_map_tracker_.Track(map, result.relocalized ? kRelocalizedRadiusFactor : 1.0, frame);
-    const int needed = recent ? options_.min_relocalized_inliers : options_.min_local_inliers;
-    result.tracked = result.estimate.inliers >= needed;
-    if (!result.tracked) {
-      result.reason = "lost: " + std::to_string(result.estimate.inliers) + " landmarks of the local map found, " +
-                      std::to_string(needed) + " needed";
-    }
-  } else {
-    result.reason = "lost: no keyframe recognised";
-  }
-  result.local_map_ms = MillisecondsSince(local_start);
+  if (!result.tracked && result.reason.empty()) result.reason = "lost: no keyframe recognised";
+  result.match_ms = MillisecondsSince(start) - result.local_map_ms;
   if (result.tracked) {
     if (result.relocalized) frames_since_relocalization_ = 0;
-    if (lost_frames_ == 0) {
-      motion_model_.Update(last_.camera_from_map, frame->camera_from_map);
-    } else {
-      motion_model_.Reset();
-    }
+    // After a short blindness the speed of before is the best guess.
+    if (lost_frames_ == 0) motion_model_.Update(last_.camera_from_map, frame->camera_from_map);
+    if (result.relocalized) motion_model_.Reset();
     lost_frames_ = 0;
     Remember(*map, *frame);
   } else {
     ++lost_frames_;
-    motion_model_.Reset();
+    if (lost_frames_ > options_.recent_frames) motion_model_.Reset();
     result.relocalized = false;
   }
   return result;

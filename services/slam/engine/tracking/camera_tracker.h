@@ -75,6 +75,10 @@ class CameraTracker {
  private:
   bool TrackLastFrame(const SlamMap& map, Frame* frame) const;
   bool TrackReferenceKeyframe(const SlamMap& map, Frame* frame) const;
+  /// Expects the camera where its last speed would have brought it since it was lost.
+  bool TrackBlindly(const SlamMap& map, Frame* frame) const;
+  /// Says in the result whether enough of the local map is found from the frame's pose.
+  void FollowLocalMap(SlamMap* map, Frame* frame, TrackedPose* result) const;
   void Remember(const SlamMap& map, const Frame& frame);
 
   CameraTrackerOptions options_;

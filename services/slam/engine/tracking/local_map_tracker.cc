@@ -16,6 +16,9 @@ constexpr double kMatchRatio = 0.8;
 // Points seen straight as before can be predicted better than points seen from the side.
 constexpr double kStraightCosine = 0.998;
 constexpr double kStraightRadiusPx = 2.5, kOtherRadiusPx = 4.0;
+// With fewer landmarks the pose is worth a second, wider search around it.
+constexpr int kFewInliers = 100;
+constexpr double kWiderRadiusFactor = 2;
 
 }  // namespace
 
@@ -49,12 +52,12 @@ std::vector<KeyframeId> LocalMapTracker::LocalKeyframes(const SlamMap& map, cons
 }
 
 void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
-                                           Frame* frame) const {
+                                           std::set<LandmarkId>* in_view, Frame* frame) const {
   std::set<LandmarkId> seen;
   for (LandmarkId& id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     id = landmark == nullptr ? kNoId : landmark->id;
-    if (landmark != nullptr && seen.insert(id).second) ++landmark->visible;
+    if (landmark != nullptr && seen.insert(id).second) in_view->insert(id);
   }
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
@@ -65,11 +68,11 @@ void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<Keyfr
       const auto view =
           PredictView(*landmark, map->PositionInMap(*landmark), frame->camera_from_map, center, camera_, map->scales());
       if (!view) continue;
-      ++landmark->visible;
+      in_view->insert(landmark->id);
       const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor *
                             camera_.SpreadAt(view->pixel_px);
       const SearchWindow window{view->pixel_px, radius * map->scales().scale(view->octave), view->octave - 1,
-                                view->octave};
+                                view->octave + 1};
       const int best = search.FindBest(*frame->features, landmark->descriptor, window, kMaxHammingDistance, kMatchRatio,
                                        [&](int j) { return frame->IsFree(j); });
       if (best >= 0) frame->landmark_ids[best] = landmark->id;
@@ -80,8 +83,14 @@ void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<Keyfr
 PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* frame) const {
   const std::vector<KeyframeId> keyframes = LocalKeyframes(*map, *frame);
   if (!keyframes.empty()) frame->reference_keyframe_id = keyframes.front();
-  SearchLocalLandmarks(map, keyframes, radius_factor, frame);
+  std::set<LandmarkId> in_view;
+  SearchLocalLandmarks(map, keyframes, radius_factor, &in_view, frame);
   PoseEstimate estimate = solver_.Solve(*map, frame);
+  if (estimate.inliers < kFewInliers) {
+    SearchLocalLandmarks(map, keyframes, kWiderRadiusFactor * radius_factor, &in_view, frame);
+    estimate = solver_.Solve(*map, frame);
+  }
+  for (const LandmarkId id : in_view) ++map->FindLandmark(id)->visible;
   for (const LandmarkId id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     if (landmark != nullptr) ++landmark->found;

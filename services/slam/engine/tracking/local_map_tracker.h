@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "geometry/camera_model.h"
@@ -23,7 +24,7 @@ class LocalMapTracker {
  private:
   std::vector<KeyframeId> LocalKeyframes(const SlamMap& map, const Frame& frame) const;
   void SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
-                            Frame* frame) const;
+                            std::set<LandmarkId>* in_view, Frame* frame) const;
 
   CameraModel camera_;
   FramePoseSolver solver_;

@@ -19,6 +19,14 @@ std::string Format(const char* format, Values... values) {
   return text;
 }
 
+double MedianDisplacementPx(const std::vector<PixelPair>& pairs) {
+  std::vector<double> moved_px;
+  for (const PixelPair& pair : pairs) moved_px.push_back((pair.second_px - pair.first_px).norm());
+  const auto middle = moved_px.begin() + static_cast<std::ptrdiff_t>(moved_px.size() / 2);
+  std::nth_element(moved_px.begin(), middle, moved_px.end());
+  return *middle;
+}
+
 int CountTracked(const Frame& frame) {
   return static_cast<int>(std::count_if(frame.labels.begin(), frame.labels.end(),
                                         [](const FeatureLabel& label) { return label.role == FeatureRole::kTracked; }));
@@ -60,6 +68,12 @@ std::optional<InitialMap> MapInitializer::Try(const Frame& current, RandomEngine
   for (const FeatureMatch& match : initial.matches) {
     pairs.push_back(
         {reference_->features->keypoints[match.query].pixel_px, current.features->keypoints[match.train].pixel_px});
+  }
+  const double moved_px = MedianDisplacementPx(pairs);
+  if (moved_px < options_.min_displacement_px) {
+    reason_ = Format("the camera stands still: matches moved by %.1f px in the median, %.1f needed", moved_px,
+                     options_.min_displacement_px);
+    return std::nullopt;
   }
   std::optional<TwoViewMotion> motion = FindMotion(pairs, random, &initial.from_homography);
   if (!motion) return std::nullopt;

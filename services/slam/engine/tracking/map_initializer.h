@@ -14,9 +14,10 @@
 namespace kinemap {
 
 struct InitializerOptions {
-  int min_features = 100;  ///< trackable features a reference frame must have
-  int min_matches = 100;   ///< fewer, and the reference is replaced by the current frame
-  int min_points = 50;     ///< points the motion must triangulate
+  int min_features = 100;            ///< trackable features a reference frame must have
+  int min_matches = 100;             ///< fewer, and the reference is replaced by the current frame
+  double min_displacement_px = 1.0;  ///< of matches in the median; with less the camera stands still
+  int min_points = 50;               ///< points the motion must triangulate
   int ransac_iterations = 200;
   double sigma_px = 1.0;           ///< standard deviation of a keypoint
   double homography_ratio = 0.45;  ///< above it R_H = S_H / (S_H + S_F) chooses the homography

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "features/brute_force_matcher.h"
+#include "features/feature_budget.h"
 #include "features/keypoint_distribution.h"
 #include "features/keypoint_grid.h"
 #include "features/object_labels.h"
@@ -176,14 +177,28 @@ TEST(RotationConsistency, RejectsMatchesThatTurnDifferently) {
   EXPECT_EQ(rotation.Inconsistent(), std::vector<int>{50});
 }
 
+TEST(FeatureBudget, AsksForMoreWhileObjectsCoverTheImage) {
+  FeatureBudget budget(1000);
+  std::vector<FeatureLabel> labels(100);
+  budget.Observe(labels);
+  EXPECT_EQ(budget.next(), 1000);
+  for (int i = 0; i < 40; ++i) labels[i].role = FeatureRole::kSighted;
+  budget.Observe(labels);
+  EXPECT_EQ(budget.next(), 1666);
+  for (FeatureLabel& label : labels) label.role = FeatureRole::kIgnored;
+  budget.Observe(labels);
+  EXPECT_EQ(budget.next(), 2000);
+}
+
 class Labels : public ::testing::Test {
  protected:
   Labels() : track_image_(480, 640, CV_32S, cv::Scalar(0)) { track_image_(cv::Rect(100, 100, 100, 100)).setTo(5); }
 
-  FeatureLabel At(Stage stage, MotionState state, double x, double y, bool fresh = true) const {
+  FeatureLabel At(Stage stage, MotionState state, double x, double y, bool fresh = true, int octave = 0) const {
     Keypoint keypoint;
+    keypoint.octave = octave;
     keypoint.raw_px = keypoint.pixel_px = {x, y};
-    return ObjectLabels(stage, track_image_, {{5, 3, state}}, fresh, 3).LabelOf(keypoint);
+    return ObjectLabels(stage, track_image_, {{5, 3, state}}, fresh, 3, PyramidScales(8, 1.2)).LabelOf(keypoint);
   }
 
   cv::Mat track_image_;
@@ -202,6 +217,12 @@ TEST_F(Labels, DynamicKeepsEveryObjectOut) {
   EXPECT_EQ(label.state, MotionState::kPotentiallyDynamic);
   EXPECT_EQ(label.object_id, 5u);
   EXPECT_EQ(label.category, 3);
+}
+
+TEST_F(Labels, CoarseFeaturesKeepMoreDistanceFromWhatMoves) {
+  EXPECT_EQ(At(Stage::kMoving, MotionState::kMoving, 92, 150).role, FeatureRole::kTracked);
+  EXPECT_EQ(At(Stage::kMoving, MotionState::kMoving, 92, 150, true, 7).role, FeatureRole::kIgnored);
+  EXPECT_EQ(At(Stage::kMoving, MotionState::kNonMoving, 92, 150, true, 7).role, FeatureRole::kTracked);
 }
 
 TEST_F(Labels, MovingTracksWhatStandsAndNothingElse) {

@@ -64,6 +64,27 @@ TEST(MapInitializer, WaitsForParallaxAndThenFindsTheMotion) {
   EXPECT_GT(direction.dot(Eigen::Vector3d(0.8, 0, 0.2).normalized()), 0.99);
 }
 
+TEST(MapInitializer, SaysThatTheCameraStandsStill) {
+  const Scene scene(400, 4, 6, 16);
+  MapInitializer initializer({}, TestCamera());
+  RandomEngine random(0, 1);
+  initializer.Try(Seen(scene, {0, 0, 0}, 1), random);
+  EXPECT_FALSE(initializer.Try(Seen(scene, {0, 0, 0}, 2), random));
+  EXPECT_EQ(initializer.reason().find("the camera stands still"), 0u) << initializer.reason();
+}
+
+TEST(MapInitializer, WaitsWhileTheCameraOnlyTurns) {
+  const Scene scene(400, 4, 6, 16);
+  MapInitializer initializer({}, TestCamera());
+  RandomEngine random(0, 1);
+  initializer.Try(Seen(scene, {0, 0, 0}, 1), random);
+  for (int i = 1; i <= 5; ++i) {
+    const RigidTransform turned(Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * i, Eigen::Vector3d::UnitY())), {0, 0, 0});
+    EXPECT_FALSE(initializer.Try(scene.Observe(TestCamera(), TestScales(), turned, i + 1), random)) << i;
+    EXPECT_NE(initializer.reason().find("homography"), std::string::npos) << initializer.reason();
+  }
+}
+
 TEST(MapInitializer, SaysThatAnEmptyImageHasTooFewFeatures) {
   const Scene scene(50, 4, 6, 16);
   MapInitializer initializer({}, TestCamera());

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rounds of 500 m through the simulated town: the three stages side by side, with and without loop closing.
+
+`python -m tests.benchmark.slam.simulated_loops --drives FOLDER [--seeds 1-10] [--kinds static,heavy] [--jobs 2]`
+renders the drives that are not in the folder yet. Objects and who of them moves are the simulator's own, so that the
+engine alone is judged; `static`: no traffic, cars parked; `heavy`: a third of the image moves. Error after Sim(3)
+alignment; a run that tracked less than 95 % of its frames is lost and counts as the worst.
+"""
+
+from pathlib import Path
+
+from tests.benchmark.measurements_page import markdown_table, put
+from tests.benchmark.slam.benchmark_passes import is_lost, median_ate_m, metres, parser_of, run_groups
+from tests.benchmark.slam.engine_pass import EnginePass, PassReport
+from tests.benchmark.slam.sequence_part import SequencePart
+from tests.benchmark.slam.simulated_drives import add_drive_arguments, simulated_drive
+from tests.benchmark.slam.trajectory_picture import draw_trajectories
+
+STAGES = ("base", "dynamic", "moving")
+HEADER = ("traffic", "stage", "runs", "lost", "ATE with loops", "without", "worst with loops", "coverage, worst")
+
+
+def row(kind: str, stage: str, with_loops: list[PassReport], without: list[PassReport]) -> list[str]:
+    """A stage's line of the table."""
+    kept = [report.ate_m for report in with_loops if not is_lost(report)]
+    return [
+        kind,
+        stage,
+        str(len(with_loops)),
+        f"{sum(map(is_lost, with_loops))} / {sum(map(is_lost, without))}",
+        metres(median_ate_m(with_loops)),
+        metres(median_ate_m(without)),
+        metres(max(kept)) if kept else "-",
+        f"{min(report.coverage for report in with_loops):.0%}",
+    ]
+
+
+def main() -> None:
+    """Run every drive in every stage, twice."""
+    parser = parser_of(__doc__)
+    add_drive_arguments(parser, "1-10")
+    parser.add_argument("--kinds", default="static,heavy")
+    parser.add_argument("--picture", type=Path, help="PNG of the trajectories beside the truth")
+    given = parser.parse_args()
+    groups = {}
+    for kind in given.kinds.split(","):
+        folders = {seed: simulated_drive(kind, seed, given.drives) for seed in given.seeds}
+        for stage in STAGES:
+            for loops in (1, 0):
+                groups[f"{kind} {stage}{'' if loops else ' without loops'}"] = [
+                    EnginePass((SequencePart(folder),), stage, {"loop_closing": loops}, f"{kind} {stage}, seed {seed}")
+                    for seed, folder in folders.items()
+                ]
+    reports = run_groups(groups, given.jobs)
+    rows = [
+        row(kind, stage, reports[f"{kind} {stage}"], reports[f"{kind} {stage} without loops"])
+        for kind in given.kinds.split(",")
+        for stage in STAGES
+    ]
+    command = f"python -m tests.benchmark.slam.simulated_loops --kinds {given.kinds} ({len(given.seeds)} seeds)"
+    put("slam-simulated-loops", command, markdown_table(HEADER, rows))
+    if given.picture is not None:
+        drawn = [report for name, of_name in reports.items() if "without" not in name for report in of_name]
+        draw_trajectories(drawn, given.picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether the engine slows down or fills the memory: ten thousand frames, round after round through the same town.
+
+`python -m tests.benchmark.slam.ten_thousand_frames --drives FOLDER [--seeds 1] [--frames 10000]` puts its table into
+docs/measurements.md. One simulated round is shown again and again; nothing else should run on the machine.
+"""
+
+import numpy as np
+
+from tests.benchmark.measurements_page import markdown_table, put
+from tests.benchmark.slam.benchmark_passes import parser_of, run_groups
+from tests.benchmark.slam.engine_pass import EnginePass, PassReport
+from tests.benchmark.slam.sequence_part import SequencePart
+from tests.benchmark.slam.simulated_drives import add_drive_arguments, simulated_drive
+
+_NOT_YET_BACK = 100
+HEADER = (
+    "seed",
+    "frames, km",
+    "coverage",
+    "ms a frame, second and last thousand",
+    "memory after the first thousand and in the end",
+    "MB a km",
+    "keyframes alive of all",
+    "landmarks",
+)
+
+
+def round_of(part: SequencePart) -> int:
+    """After how many frames the drive is nearest to where it began."""
+    centers = part.true_poses()[:, :3, 3]
+    return int(np.linalg.norm(centers[_NOT_YET_BACK:] - centers[0], axis=1).argmin()) + _NOT_YET_BACK
+
+
+def row(seed: int, report: PassReport) -> list[str]:
+    """A seed's line of the table."""
+    thousand = min(1000, report.frames // 4)
+    second, last = report.wall_ms[thousand : 2 * thousand].mean(), report.wall_ms[-thousand:].mean()
+    kilometres = np.linalg.norm(np.diff(report.true_centers, axis=0), axis=1).cumsum() / 1000
+    grown_mb = report.rss_mb[-1] - report.rss_mb[thousand]
+    return [
+        str(seed),
+        f"{report.frames}, {kilometres[-1]:.1f} km",
+        f"{report.coverage:.1%}",
+        f"{second:.1f}, {last:.1f} ({last / second - 1:+.0%})",
+        f"{report.rss_mb[thousand]:.0f}, {report.rss_mb[-1]:.0f} MB",
+        f"{grown_mb / (kilometres[-1] - kilometres[thousand]):.1f}",
+        f"{report.keyframes - report.culled} of {report.keyframes}",
+        str(sum(report.landmarks.values())),
+    ]
+
+
+def main() -> None:
+    """Drive round after round."""
+    parser = parser_of(__doc__)
+    add_drive_arguments(parser, "1")
+    parser.add_argument("--frames", type=int, default=10_000)
+    parser.add_argument("--stage", default="moving")
+    given = parser.parse_args()
+    groups = {}
+    for seed in given.seeds:
+        folder = simulated_drive("static", seed, given.drives)
+        frames = round_of(SequencePart(folder))
+        rounds = [SequencePart(folder, 0, frames)] * (given.frames // frames)
+        rounds.append(SequencePart(folder, 0, given.frames % frames))
+        groups[str(seed)] = [
+            EnginePass(tuple(part for part in rounds if part.frames), given.stage, name=f"seed {seed}")
+        ]
+    reports = run_groups(groups, given.jobs)
+    command = f"python -m tests.benchmark.slam.ten_thousand_frames --frames {given.frames}"
+    put("slam-ten-thousand-frames", command, markdown_table(HEADER, [row(int(n), r[0]) for n, r in reports.items()]))
+
+
+if __name__ == "__main__":
+    main()
