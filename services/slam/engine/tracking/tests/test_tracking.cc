@@ -177,14 +177,14 @@ TEST_F(Tracker, SurvivesAJumpByTheReferenceKeyframe) {
 
 TEST_F(Tracker, IsLostInAnEmptyImageAndFoundAgain) {
   const Scene nothing(0, 1, 1, 2);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 12; ++i) {
     Frame frame = Seen(nothing, {0, 0, 0}, 1001 + i);
     const TrackedPose pose = tracker_.Track(&map_, &frame);
     EXPECT_FALSE(pose.tracked);
     EXPECT_EQ(pose.reason, "lost: no keyframe recognised");
   }
   const Eigen::Vector3d center(0.4, 0.3, 0.5);
-  Frame frame = Seen(scene_, center, 1010);
+  Frame frame = Seen(scene_, center, 1020);
   const TrackedPose pose = tracker_.Track(&map_, &frame);
   ASSERT_TRUE(pose.tracked) << pose.reason;
   EXPECT_TRUE(pose.relocalized);
