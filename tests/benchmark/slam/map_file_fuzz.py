@@ -38,7 +38,7 @@ def _drive(engine: _engine.Engine, room: TexturedRoom, frames: range) -> None:
     nobody = (np.empty(0, np.uint32), np.empty(0, np.int32), np.empty(0, np.uint8))
     for index in frames:
         engine.begin_frame((index + 1) * _FRAME_NS, room.render(index)[0])
-        engine.finish_frame(None, *nobody, True, None)
+        engine.finish_frame(None, *nobody, True)
         engine.take_map_update()
 
 

@@ -13,17 +13,18 @@ import json
 import tempfile
 import time
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from services.evaluation.trajectory.alignment import Alignment, Similarity, align
 from services.slam import _engine
+from services.slam.vocabulary import SHIPPED_VOCABULARY
 from tests.benchmark.measurements_page import markdown_table, put
 from tests.benchmark.slam.engine_run import TRACKING, EngineRun
-from tests.benchmark.slam.mask_objects import MaskObjects
+from tests.benchmark.slam.sequence_part import SequencePart
 
 Array = npt.NDArray[np.float64]
 COMMAND = "python -m tests.benchmark.slam.second_drive FIRST SECOND ..."
@@ -48,33 +49,26 @@ class Drive:
         world = np.array(about["sequences"][self.sequence.name]["world_from_first_camera"])
         return np.asarray(centers @ world[:3, :3].T + world[:3, 3])[: self.frames]
 
-    def camera(self) -> _engine.CameraModel:
-        """The left camera."""
-        line = next(line for line in (self.sequence / "calib.txt").read_text().splitlines() if line.startswith("P0"))
-        p = np.array(line.split()[1:], float).reshape(3, 4)
-        height, width = self._image(self._paths()[0]).shape
-        return _engine.CameraModel(width, height, p[0, 0], p[1, 1], p[0, 2], p[1, 2])
+    def engine(self, *, localize_only: bool = False) -> _engine.Engine:
+        """One that has seen nothing yet."""
+        part = SequencePart(self.sequence)
+        height, width = next(iter(part.read())).image.shape
+        options = _engine.EngineOptions()
+        options.vocabulary_path = str(SHIPPED_VOCABULARY)
+        options.localize_only = localize_only
+        return _engine.Engine(_engine.CameraModel(width, height, *part.intrinsics(), []), options)
 
     def through(self, engine: _engine.Engine) -> EngineRun:
         """Every frame through the engine."""
-        paths = self._paths()
-        objects = MaskObjects(self.sequence / "instances", [path.stem for path in paths])
         run = EngineRun(engine)
-        for path in paths:
-            run.step(self._image(path), objects)
+        for frame in islice(SequencePart(self.sequence).read(), self.frames):
+            run.step(frame)
         return run
-
-    def _paths(self) -> list[Path]:
-        return sorted((self.sequence / "image_0").iterdir())[: self.frames]
-
-    @staticmethod
-    def _image(path: Path) -> npt.NDArray[np.uint8]:
-        return np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
 
 
 def map_of(drive: Drive, path: Path) -> tuple[Similarity, str]:
     """Drive through, save the map, and say where it lies in the world and what saving took."""
-    run = drive.through(_engine.Engine(drive.camera(), _engine.EngineOptions()))
+    run = drive.through(drive.engine())
     run.finish()
     start = time.perf_counter()
     run.engine.save_maps(str(path), in_background=False)
@@ -93,9 +87,7 @@ def map_of(drive: Drive, path: Path) -> tuple[Similarity, str]:
 
 def localised(drive: Drive, path: Path, world_from_map: Similarity) -> tuple[list[str], float]:
     """The table's row of a second drive, and how many ms loading took."""
-    options = _engine.EngineOptions()
-    options.localize_only = True
-    engine = _engine.Engine(drive.camera(), options)
+    engine = drive.engine(localize_only=True)
     start = time.perf_counter()
     engine.load_maps(str(path))
     load_ms = (time.perf_counter() - start) * 1e3
