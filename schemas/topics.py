@@ -75,16 +75,7 @@ OBJECTS = _frame_topic("tracker/objects", objects_pb2.Objects, "tracker", "slam"
 TRACKED_FRAME = _frame_topic("slam/tracked_frame", slam_pb2.TrackedFrame, "slam", "mapstore", "cli", depth=64)
 MAP_UPDATE = _frame_topic("slam/map_update", slam_pb2.MapUpdate, "slam", "mapstore", depth=64)
 DENSITY = _frame_topic("mapstore/density", density_pb2.Density, "mapstore", "cli")
-MAPPED_OBJECTS = Topic(
-    "slam/objects",
-    mapped_objects_pb2.MappedObjects,
-    "slam",
-    ("recorder",),
-    False,
-    True,
-    1,
-    WhenFull.DROP_OLDEST,
-)
+MAPPED_OBJECTS = _frame_topic("slam/objects", mapped_objects_pb2.MappedObjects, "slam", "mapstore", depth=64)
 POSE = Topic("slam/pose", PoseInFrame, "slam", ("recorder",), False, True, 1, WhenFull.DROP_OLDEST)
 END = Topic(
     "camera/end",

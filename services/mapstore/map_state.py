@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import numpy.typing as npt
 
-from schemas.records import MapUpdate, TrackedFrame, TrackingState
+from schemas.records import MappedObject, MappedObjects, MapUpdate, TrackedFrame, TrackingState
 from services.mapstore import sim3
 from services.mapstore.growing_table import GrowingTable
 from services.mapstore.landmark_cluster import STATES, LandmarkCluster, empty_cluster
@@ -64,6 +64,7 @@ class MapState:
         self._newest: tuple[int, int, TrackingState, str, str] = (NOT_YET, 0, TrackingState.INITIALIZING, "", "")
         self._scale: tuple[int, bool] = (0, False)
         self._dense_points: dict[int, int] = {}
+        self._objects: tuple[MappedObject, ...] = ()
         self.session = ""
 
     def add_frame(self, sequence: int, frame: TrackedFrame) -> None:
@@ -87,6 +88,11 @@ class MapState:
         self._refer(row, NO_ROW, reference)
         self._newest = (sequence, frame.timestamp_ns, frame.state, frame.reason, frame.handling)
         self._scale = (frame.map_id, frame.metric_scale)
+        self._objects = ()
+
+    def see_objects(self, seen: MappedObjects) -> None:
+        """Takes the cuboids of the objects in the frame added last; they are not kept beyond it."""
+        self._objects = seen.objects
 
     def finish(self, sequence: int) -> None:
         """The input ended under this sequence number."""
@@ -140,6 +146,7 @@ class MapState:
             frames=FrameColumns(**self._frames.snapshot(*_FRAME_COLUMNS)),
             sightings=self._sightings,
             dense_points=sum(self._dense_points.values()),
+            objects=self._objects,
         )
 
     def _rows_of_keyframes(self, keyframe_ids: npt.NDArray[np.int64]) -> npt.NDArray[np.intp]:

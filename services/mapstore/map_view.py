@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from schemas.records import TrackingState
+from schemas.records import MappedObject, TrackingState
 from services.mapstore import sim3
 from services.mapstore.landmark_cluster import LandmarkCluster
 
@@ -74,6 +74,8 @@ class MapView:
     """object id -> times at which it was seen moving, rising"""
     dense_points: int = 0
     """of all semi-dense maps; they are in the file only"""
+    objects: tuple[MappedObject, ...] = ()
+    """cuboids of the objects that the newest frame shows; none where the map is not metric"""
 
     def final_poses(self) -> npt.NDArray[np.float64]:
         """(F, 7) map_from_camera of every frame: camera_from_reference under the reference's newest pose; NaN for none.

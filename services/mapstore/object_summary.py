@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map's landmarks by object: what each object is and where it was seen last."""
+"""The objects of the map, by their landmarks and cuboids: what each one is and where it was seen last."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from schemas.categories import category_name
-from schemas.records import MotionState
+from schemas.records import MappedObject, MotionState
 from services.mapstore import sim3
 from services.mapstore.map_view import MapView
 
 
 @dataclass(frozen=True)
 class ObjectSummary:
-    """One object of the current map, as its most recent landmarks have it."""
+    """One object of the current map, as its cuboid in the newest frame has it, else its most recent landmarks."""
 
     object_id: int
     category: str
@@ -22,13 +22,33 @@ class ObjectSummary:
     landmarks: int
     """of all time"""
     position: tuple[float, float, float]
-    """middle of the landmarks seen last, map frame, metres or map units"""
+    """middle of the cuboid, else of the landmarks seen last; map frame, metres or map units"""
     first_seen_ns: int
+    """when its oldest landmark was; the newest frame's time where it has none"""
     last_seen_ns: int
+    cuboid: MappedObject | None = None
+    """only for what the newest frame shows, in a metric map"""
 
 
 def summarize_objects(view: MapView) -> list[ObjectSummary]:
-    """Every object with a landmark in the current map, by id."""
+    """Every object with a landmark in the current map or a cuboid in the newest frame, by id."""
+    summaries = {summary.object_id: summary for summary in _by_landmarks(view)}
+    for cuboid in view.objects:
+        known = summaries.get(cuboid.object_id)
+        summaries[cuboid.object_id] = ObjectSummary(
+            object_id=cuboid.object_id,
+            category=cuboid.category,
+            state=cuboid.motion_state,
+            landmarks=0 if known is None else known.landmarks,
+            position=cuboid.position,
+            first_seen_ns=view.timestamp_ns if known is None else known.first_seen_ns,
+            last_seen_ns=view.timestamp_ns,
+            cuboid=cuboid,
+        )
+    return [summaries[number] for number in sorted(summaries)]
+
+
+def _by_landmarks(view: MapView) -> list[ObjectSummary]:
     keyframes = view.keyframes
     placed = (keyframes.map_id == view.map_id) & np.isfinite(keyframes.pose).all(axis=1)
     rows = [row for row in np.flatnonzero(placed).tolist() if view.clusters[row].object_id.any()]

@@ -25,7 +25,7 @@ class MapstoreService(FrameService):
     """Makes each frame's map update durable, then visible, and says how much moves around the current pose."""
 
     name = NAME
-    awaits = (topics.TRACKED_FRAME, topics.MAP_UPDATE)
+    awaits = (topics.TRACKED_FRAME, topics.MAP_UPDATE, topics.MAPPED_OBJECTS)
     final_awaits = (topics.MAP_UPDATE,)
     answers = True
 
@@ -59,6 +59,7 @@ class MapstoreService(FrameService):
         frame: TrackedFrame = bundle[topics.TRACKED_FRAME]
         update: MapUpdate = bundle[topics.MAP_UPDATE]
         self._map.add_frame(sequence, frame)
+        self._map.see_objects(bundle[topics.MAPPED_OBJECTS])
         self._apply(update)
         view = self._map.view()
         density = self._density_now(view)

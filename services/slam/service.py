@@ -77,9 +77,11 @@ class SlamService(FrameService):
         self._keeper.prepare(engine, frame)
         update = engine.take_map_update(bundle.timestamp_ns)
         self._keeper.keep(engine, bundle)
-        outgoing = [Outgoing(topics.TRACKED_FRAME, frame), Outgoing(topics.MAP_UPDATE, update)]
-        if engine.mapped_objects.objects:
-            outgoing.append(Outgoing(topics.MAPPED_OBJECTS, engine.mapped_objects))
+        outgoing = [
+            Outgoing(topics.TRACKED_FRAME, frame),
+            Outgoing(topics.MAP_UPDATE, update),
+            Outgoing(topics.MAPPED_OBJECTS, engine.mapped_objects),
+        ]
         if frame.map_from_camera is not None:
             outgoing.append(Outgoing(topics.POSE, self._base_pose(frame)))
         return outgoing

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from schemas.records import MappedObject, MappedObjects, MotionState
 from services.mapstore.base_pose import BasePose
 from services.mapstore.density import DynamicDensity
 from services.mapstore.export.pcd import map_pcd
@@ -113,6 +114,24 @@ def test_objects_say_what_they_are_and_where_they_were_seen_last(client: TestCli
     assert (parked["object_id"], parked["state"]) == (8, "non_moving")
     assert car["last_seen_ns"] == 2_000_000_000
     assert 28 <= car["position"][0] <= 32
+
+
+def test_objects_of_the_newest_frame_have_a_velocity_and_a_size() -> None:
+    state = state_of(FRAMES)
+    last_ns = 2_000_000_000
+    cuboid = MappedObject(7, "car", MotionState.MOVING, (31.0, 2.0, 0.75), (3.0, 4.0, 0.0), 0.9, (4, 2, 1.5), 0.3, 0.5)
+    person = replace(cuboid, object_id=3, category="person", velocity=(0.0, 1.0, 0.0))
+    state.see_objects(MappedObjects(last_ns, 1, True, (cuboid, person)))
+    with client_of(live_map(state)) as client:
+        walker, car, parked = client.get("/objects").json()["objects"]
+    assert (car["velocity"], car["speed"], car["size"], car["heading"]) == ([3.0, 4.0, 0.0], 5.0, [4.0, 2.0, 1.5], 0.9)
+    assert (car["position"], car["landmarks"]) == ([31.0, 2.0, 0.75], 60)
+    assert car["first_seen_ns"] < car["last_seen_ns"] == last_ns
+    assert (walker["object_id"], walker["landmarks"], walker["first_seen_ns"]) == (3, 0, last_ns)
+    assert [parked[name] for name in ("velocity", "speed", "size", "heading")] == [None] * 4
+    state.add_frame(FRAMES, tracked(FRAMES, 20, 1.0))
+    with client_of(live_map(state)) as client:
+        assert [o["velocity"] for o in client.get("/objects").json()["objects"]] == [None] * 2
 
 
 def test_files_are_what_export_writes(client: TestClient) -> None:

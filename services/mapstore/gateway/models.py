@@ -70,7 +70,13 @@ class ObjectAnswer(BaseModel):
     category: str
     state: str
     landmarks: int
-    position: tuple[float, float, float]
+    position: tuple[float, float, float] = Field(description="map frame: of its middle, else of its landmarks")
+    velocity: tuple[float, float, float] | None = Field(
+        description="metres a second, map frame; this and size only of what the newest frame shows, in a metric map"
+    )
+    speed: float | None = Field(description="metres a second")
+    size: tuple[float, float, float] | None = Field(description="length (along heading), width, height in metres")
+    heading: float | None = Field(description="radians about the map's z axis, 0 along its x")
     first_seen_ns: int
     last_seen_ns: int
 
@@ -121,12 +127,17 @@ def density_answer(view: MapView, density: Density, high_from_points: int) -> De
 
 def object_answer(summary: ObjectSummary) -> ObjectAnswer:
     """The summary as an answer."""
+    cuboid = summary.cuboid
     return ObjectAnswer(
         object_id=summary.object_id,
         category=summary.category,
         state=summary.state.name.lower(),
         landmarks=summary.landmarks,
         position=summary.position,
+        velocity=None if cuboid is None else cuboid.velocity,
+        speed=None if cuboid is None else math.hypot(*cuboid.velocity),
+        size=None if cuboid is None else cuboid.size,
+        heading=None if cuboid is None else cuboid.heading_rad,
         first_seen_ns=summary.first_seen_ns,
         last_seen_ns=summary.last_seen_ns,
     )

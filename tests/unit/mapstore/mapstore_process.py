@@ -13,7 +13,7 @@ from pathlib import Path
 
 from schemas import topics
 from schemas.codec import encode
-from schemas.records import EndOfInput, FrameManifest, MapUpdate
+from schemas.records import EndOfInput, FrameManifest, MappedObjects, MapUpdate
 from schemas.topics import Topic
 from services.mapstore.service import MapstoreService
 from services.runtime.config import Config, load_config
@@ -70,6 +70,7 @@ class FedMapstore:
         envelope = Envelope(SESSION, sequence, frame.timestamp_ns)
         self.publish(topics.MANIFEST, FrameManifest(frame.timestamp_ns, "test", str(sequence), ()), envelope)
         self.publish(topics.MAP_UPDATE, update, envelope)
+        self.publish(topics.MAPPED_OBJECTS, MappedObjects(frame.timestamp_ns, frame.map_id, True), envelope)
         self.publish(topics.TRACKED_FRAME, frame, envelope)
 
     def publish(self, topic: Topic, record: object, envelope: Envelope) -> None:

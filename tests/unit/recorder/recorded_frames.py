@@ -18,6 +18,7 @@ from schemas.records import (
     Image,
     InstanceMotions,
     Instances,
+    MappedObjects,
     MapUpdate,
     MaskSource,
     MovingMask,
@@ -63,6 +64,7 @@ def payload(topic: Topic, sequence: int) -> bytes:
             t, TrackingState.TRACKING, "", 0, pose, None, 0, pose, 100, 90, False, MaskSource.FRESH, False, "moving"
         ),
         topics.MAP_UPDATE: lambda: MapUpdate(t),
+        topics.MAPPED_OBJECTS: lambda: MappedObjects(t),
         topics.DENSITY: lambda: Density(t, (0.0, 0.0, 0.0), 10.0, 30.0, sequence, 0, 5, DensityLevel.LOW, False),
         topics.POSE: lambda: PoseInMap(t, pose),
         topics.END: lambda: EndOfInput(t, sequence),
@@ -80,6 +82,7 @@ PER_FRAME = (
     topics.OBJECTS,
     topics.TRACKED_FRAME,
     topics.MAP_UPDATE,
+    topics.MAPPED_OBJECTS,
     topics.DENSITY,
 )
 

@@ -15,6 +15,7 @@ let points = new Float32Array(0); // x y state
 let way = new Float32Array(0); // x y
 let pose = null;
 let density = null;
+let objects = []; // those of the newest frame have a size
 let asked = null; // a place that was clicked, null: the robot
 let view = { x: 0, y: 0, scale: 8, fitted: true };
 
@@ -60,6 +61,7 @@ function draw() {
     }
   }
   drawWay();
+  objects.forEach(drawObject);
   drawSphere();
   drawRobot();
 }
@@ -70,6 +72,40 @@ function drawWay() {
   pen.beginPath();
   for (let i = 0; i < way.length; i += 2) pen.lineTo(...toScreen(way[i], way[i + 1]));
   pen.stroke();
+}
+
+// A box from above, and an arrow as far as the object comes in a second.
+function drawObject(object) {
+  if (!object.size) return;
+  const [x, y] = object.position;
+  const [length, width] = object.size;
+  const [cos, sin] = [Math.cos(object.heading), Math.sin(object.heading)];
+  pen.strokeStyle = pen.fillStyle = object.state === "moving" ? COLOURS[2] : COLOURS[1];
+  pen.lineWidth = 1.5;
+  pen.beginPath();
+  for (const [along, across] of [[1, 1], [1, -1], [-1, -1], [-1, 1]]) {
+    const [forward, left] = [along * length / 2, across * width / 2];
+    pen.lineTo(...toScreen(x + cos * forward - sin * left, y + sin * forward + cos * left));
+  }
+  pen.closePath();
+  pen.stroke();
+  if (object.state === "moving") drawArrow([x, y], [x + object.velocity[0], y + object.velocity[1]]);
+}
+
+function drawArrow(from, to) {
+  const [left, top] = toScreen(...to);
+  const [fromLeft, fromTop] = toScreen(...from);
+  pen.beginPath();
+  pen.moveTo(fromLeft, fromTop);
+  pen.lineTo(left, top);
+  pen.stroke();
+  pen.save();
+  pen.translate(left, top);
+  pen.rotate(Math.atan2(top - fromTop, left - fromLeft));
+  pen.beginPath();
+  pen.moveTo(3, 0); pen.lineTo(-5, 4); pen.lineTo(-5, -4);
+  pen.fill();
+  pen.restore();
 }
 
 function drawSphere() {
@@ -150,6 +186,7 @@ async function ask(url) {
 async function refresh() {
   try {
     [density, pose] = await Promise.all([ask(densityUrl()), ask("/pose")].map(async (answer) => (await answer).json()));
+    objects = (await (await ask("/objects")).json()).objects;
     const seen = await (await ask("/map/top_view")).arrayBuffer();
     const [pointCount, poseCount] = new Uint32Array(seen, 0, 2);
     points = new Float32Array(seen, 8, 3 * pointCount);

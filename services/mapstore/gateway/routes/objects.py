@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""GET /objects: what the landmarks on objects say about them."""
+"""GET /objects: what and where the things in the map are, and how they move."""
 
 from fastapi import APIRouter, Response
 
@@ -16,7 +16,10 @@ def router(live: LiveMap) -> APIRouter:
 
     @routes.get("/objects", summary="The objects in the map", response_model=ObjectsAnswer)
     def objects() -> Response:
-        """Every object with a landmark in the current map: category, motion state, where and when it was seen last."""
+        """Every object of the current map: category, motion state, where and when it was seen last.
+
+        Those in the newest frame with velocity and size, where the map is metric.
+        """
         return Response(built.of(live.view), media_type="application/json")
 
     return routes
