@@ -36,7 +36,7 @@ void EngineOptions::Check() const {
           depth_baseline_m);
   Require(camera_height_m >= 0 && camera_height_m <= 100, "camera_height_m", "0 to 100", camera_height_m);
   Require(new_map_after_lost >= 1, "new_map_after_lost", "at least 1", new_map_after_lost);
-  Require(opencv_threads >= 0, "opencv_threads", "0 or more", opencv_threads);
+  Require(opencv_threads >= 0 && opencv_threads <= 64, "opencv_threads", "0 to 64", opencv_threads);
   Require(map_id >= 0 && map_id < (int64_t{1} << 31), "map_id", "0 to 2^31 - 1", static_cast<double>(map_id));
   RigidTransform::FromMatrix(map_from_first_camera);
 }
