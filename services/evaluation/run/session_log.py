@@ -90,12 +90,20 @@ class SessionLog:
         return int(values[np.argmax(counts)])
 
     def live_trajectory(self) -> Trajectory | None:
-        """The poses as slam said them frame by frame, in its main map; None where nothing was tracked."""
+        """The poses as slam said them frame by frame, in its main map; None where nothing was tracked.
+
+        Where that map became metric on the way, those before are left out: they are in other units.
+        """
         map_id = self.main_map_id()
+        frames = [
+            frame
+            for _, frame in sorted(self.tracked.items())
+            if frame.state is TrackingState.TRACKING and frame.map_from_camera is not None and frame.map_id == map_id
+        ]
         poses = {
             frame.timestamp_ns: matrix_from_pose(frame.map_from_camera)
-            for frame in self.tracked.values()
-            if frame.state is TrackingState.TRACKING and frame.map_from_camera is not None and frame.map_id == map_id
+            for frame in frames
+            if frame.map_from_camera is not None and frame.metric_scale == frames[-1].metric_scale
         }
         return _trajectory(poses, "live trajectory")
 

@@ -100,5 +100,9 @@ def _one_line(error: ValidationError) -> str:
     parts = []
     for problem in error.errors():
         place = ".".join(str(part) for part in problem["loc"])
+        # What a section's own check says already names its fields.
+        if problem["type"] == "value_error" and isinstance(problem["input"], dict):
+            parts.append(f"{place}: {problem['ctx']['error']}")
+            continue
         parts.append(f"{place} = {problem['input']!r}: {problem['msg'][:1].lower()}{problem['msg'][1:]}")
     return "configuration: " + "; ".join(parts)

@@ -125,6 +125,20 @@ def test_ate_stands_beside_its_coverage(report: Report) -> None:
     assert report["ate"]["live"]["frames"] == 50
 
 
+def test_live_poses_from_before_the_map_was_metric_are_in_other_units(log: SessionLog) -> None:
+    for key, frame in log.tracked.items():
+        if key >= 15:
+            log.tracked[key] = replace(frame, metric_scale=True)
+        elif frame.map_from_camera is not None:
+            pose = frame.map_from_camera.copy()
+            pose[:3] *= 0.1
+            log.tracked[key] = replace(frame, map_from_camera=pose)
+    live = log.live_trajectory()
+    assert live is not None
+    assert len(live) == 30
+    assert build_report(log, live, {}, RunOutcome())["ate"]["live"]["ate_m"]["rmse"] < 1e-9
+
+
 def test_a_run_that_never_initialised_says_so(log: SessionLog) -> None:
     log.tracked = {key: frame for key, frame in log.tracked.items() if key < INITIALIZED}
     report = build_report(log, None, {}, RunOutcome())

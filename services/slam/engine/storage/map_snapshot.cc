@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "storage/map_snapshot.h"
 
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -21,11 +22,24 @@ std::vector<double> EyeOf(const CameraModel& camera, const PyramidScales& scales
   return eye;
 }
 
-std::string List(const std::vector<double>& values) {
-  std::ostringstream text;
-  for (const double value : values) text << (text.tellp() > 0 ? " " : "") << value;
-  return text.str();
-}
+/// What the numbers of `EyeOf` are, in their order.
+constexpr std::array kEyeNames = {"width",
+                                  "height",
+                                  "fx",
+                                  "fy",
+                                  "cx",
+                                  "cy",
+                                  "k1",
+                                  "k2",
+                                  "p1",
+                                  "p2",
+                                  "k3",
+                                  "k4",
+                                  "lens",
+                                  "baseline in metres",
+                                  "right image made from depth",
+                                  "pyramid levels",
+                                  "scale of the last level"};
 
 const std::vector<uint8_t>& Find(const Sections& sections, const char* name) {
   const auto found = sections.find(name);
@@ -36,13 +50,14 @@ const std::vector<uint8_t>& Find(const Sections& sections, const char* name) {
 void CheckEye(const Sections& sections, const std::vector<double>& expected) {
   std::vector<double> eye;
   ByteReader(Find(sections, kCamera))(eye);
-  bool same = eye.size() == expected.size();
-  for (size_t i = 0; same && i < eye.size(); ++i) {
-    same = std::abs(eye[i] - expected[i]) <= kSameParameter * std::max(1.0, std::abs(expected[i]));
+  if (eye.size() != expected.size()) throw MapFileError("was made with a camera that this version does not know");
+  for (size_t i = 0; i < eye.size(); ++i) {
+    if (std::abs(eye[i] - expected[i]) <= kSameParameter * std::max(1.0, std::abs(expected[i]))) continue;
+    std::ostringstream text;
+    text << "was made with another camera or pyramid: " << kEyeNames.at(i) << " " << eye[i] << ", expected "
+         << expected[i];
+    throw MapFileError(text.str());
   }
-  if (same) return;
-  throw MapFileError("was made with another camera or pyramid (width height fx fy cx cy ... levels scale): expected " +
-                     List(expected) + ", got " + List(eye));
 }
 
 }  // namespace
