@@ -221,6 +221,6 @@ class Engine:
         """Whether the active map's units are metres."""
     @property
     def remaining_radial(self) -> float:
-        """Radial distortion k that flush() found on top of the calibration (pixel = project(point (1 + k r^2)))."""
+        """Radial distortion k (pixel = project(point (1 + k r^2))) that flush() believed calibration left; 0: none."""
     def take_map_update(self) -> dict[str, npt.NDArray[Any]]:
         """What changed since the last call, keyed like schemas.records.slam.MapUpdate's arrays."""

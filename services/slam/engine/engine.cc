@@ -42,8 +42,8 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   LocalMapperOptions mapper;
   mapper.merge_delay_frames = options.merge_delay_frames;
   mapper.bundle.keyframes = options.local_bundle_keyframes;
-  mapper.final_bundle.radial_sigma = options.radial_sigma;
-  mapper.final_bundle.right_shift_sigma_px = options.right_shift_sigma_px;
+  mapper.final_adjustment.bundle.radial_sigma = options.radial_sigma;
+  mapper.final_adjustment.bundle.right_shift_sigma_px = options.right_shift_sigma_px;
   return mapper;
 }
 

@@ -47,7 +47,7 @@ void Engine::SessionFields(Archive& archive) {
   auto& [last, last_from_reference, last_scale, velocity, lost_frames, frames_since_relocalization] = state;
   auto& [timestamp_ns, features, labels, landmark_ids, camera_from_map, reference_keyframe_id] = last;
   int lost_in_map = lost_policy_.lost_frames();
-  std::vector<LandmarkId> on_trial = mapper_.on_trial();
+  LandmarkCuller::OnTrial on_trial = mapper_.on_trial();
   std::map<uint32_t, MotionState> objects = object_states_.states();
   bool has_features = features != nullptr;
   archive(frame_index_, last_keyframe_index_, last_timestamp_ns_, must_be_recognised_, lost_in_map, on_trial, objects,

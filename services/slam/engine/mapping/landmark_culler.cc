@@ -10,22 +10,22 @@ constexpr int kTrialKeyframes = 3;
 }  // namespace
 
 void LandmarkCuller::Add(const std::vector<LandmarkId>& landmarks) {
-  on_trial_.insert(on_trial_.end(), landmarks.begin(), landmarks.end());
+  for (const LandmarkId id : landmarks) on_trial_.emplace(id, 0);
 }
 
-void LandmarkCuller::Cull(SlamMap* map, KeyframeId newest) {
-  std::vector<LandmarkId> still_on_trial;
-  for (const LandmarkId id : on_trial_) {
+void LandmarkCuller::Cull(SlamMap* map) {
+  OnTrial still_on_trial;
+  for (const auto& [id, keyframes_before] : on_trial_) {
     const Landmark* landmark = map->FindLandmark(id);
     if (landmark == nullptr || landmark->id != id || landmark->valid_until_ns != kStillValid) continue;
-    const int64_t age = newest - landmark->first_keyframe_id;
+    const int age = keyframes_before + 1;
     // What stays out of tracking is never looked for in a frame, so only its observations judge it.
     const bool rarely_found = landmark->IsTrackable() && landmark->found < kLeastFoundRatio * landmark->visible;
     const bool rarely_seen = age >= kKeyframesToGather && map->CountViews(*landmark) < kLeastViews;
     if (rarely_found || rarely_seen) {
       map->RemoveLandmark(id);
     } else if (age < kTrialKeyframes) {
-      still_on_trial.push_back(id);
+      still_on_trial.emplace(id, age);
     }
   }
   on_trial_ = std::move(still_on_trial);

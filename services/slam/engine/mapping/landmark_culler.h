@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -12,17 +13,20 @@ namespace kinemap {
 /// see it and be observed in three images (Mur-Artal, Montiel and Tardos 2015, section VI-B).
 class LandmarkCuller {
  public:
+  /// Landmarks and how many keyframes came after them. Ids do not tell that: merged maps have several blocks of them.
+  using OnTrial = std::map<LandmarkId, int>;
+
   void Add(const std::vector<LandmarkId>& landmarks);
 
-  const std::vector<LandmarkId>& on_trial() const { return on_trial_; }
+  const OnTrial& on_trial() const { return on_trial_; }
   /// Others take the places of the landmarks on trial, which stay, untried.
-  void Replace(std::vector<LandmarkId> on_trial) { on_trial_ = std::move(on_trial); }
+  void Replace(OnTrial on_trial) { on_trial_ = std::move(on_trial); }
 
-  /// Removes what failed, with `newest` the keyframe just inserted.
-  void Cull(SlamMap* map, KeyframeId newest);
+  /// Removes what failed; once a keyframe, just inserted.
+  void Cull(SlamMap* map);
 
  private:
-  std::vector<LandmarkId> on_trial_;
+  OnTrial on_trial_;
 };
 
 }  // namespace kinemap

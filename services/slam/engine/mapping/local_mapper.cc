@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/local_mapper.h"
 
-#include <algorithm>
-#include <set>
-
 namespace kinemap {
 
 LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& camera)
@@ -13,6 +10,7 @@ LocalMapper::LocalMapper(const LocalMapperOptions& options, const CameraModel& c
       triangulator_(options.triangulator, camera),
       fuser_(options.fuser, camera),
       bundle_adjuster_(options.bundle),
+      final_adjuster_(options.final_adjustment, camera),
       moving_placer_(camera),
       slot_(camera, options.bundle.solver) {}
 
@@ -26,7 +24,7 @@ KeyframeId LocalMapper::Insert(SlamMap* map, const Frame& frame, int64_t frame_i
 }
 
 void LocalMapper::MapAround(SlamMap* map, KeyframeId keyframe_id, int64_t due_frame) {
-  landmark_culler_.Cull(map, keyframe_id);
+  landmark_culler_.Cull(map);
   landmark_culler_.Add(measured_maker_.Make(map, keyframe_id));
   landmark_culler_.Add(triangulator_.Triangulate(map, keyframe_id));
   fuser_.Fuse(map, keyframe_id);
@@ -74,13 +72,7 @@ void LocalMapper::Leave(SlamMap* map) {
 void LocalMapper::Finish(SlamMap* map) {
   FinishMapping();
   if (!slot_.IsFree()) Merge(map);
-  const std::vector<KeyframeId> live = map->LiveKeyframes();
-  if (live.size() <= 2) return;  // adjusted when it was made
-  const size_t left_out = live.size() - std::min(live.size(), static_cast<size_t>(options_.final_keyframes));
-  BundleProblem problem = CopyBundleProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end()));
-  SolveBundle(camera_, options_.final_bundle, &problem);
-  remaining_radial_ = problem.radial;
-  WriteBackBundle(problem, map);
+  remaining_radial_ = final_adjuster_.Adjust(map);
 }
 
 }  // namespace kinemap

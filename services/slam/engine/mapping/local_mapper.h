@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapping/final_adjuster.h"
 #include "mapping/keyframe_culler.h"
 #include "mapping/landmark_culler.h"
 #include "mapping/landmark_fuser.h"
@@ -22,9 +23,7 @@ struct LocalMapperOptions {
   FuserOptions fuser;
   LocalBundleOptions bundle;
   int merge_delay_frames = 2;  ///< bundle adjustment of the keyframe at frame k is merged at frame k + this
-  int final_keyframes = 300;   ///< newest keyframes that take part in the adjustment at the end of the input
-  /// Errors that a local window leaves behind bend the map only little a frame, so the end needs a finer tolerance.
-  BundleOptions final_bundle{20, 20, 1e-8, 0.01};
+  FinalAdjusterOptions final_adjustment;
 };
 
 /// Everything that happens around a keyframe, in the background: culling, triangulation and fusion until the next frame
@@ -59,14 +58,13 @@ class LocalMapper {
   void Leave(SlamMap* map);
 
   /// All that a settled mapper carries over to the next keyframe.
-  const std::vector<LandmarkId>& on_trial() const { return landmark_culler_.on_trial(); }
-  void Restore(std::vector<LandmarkId> on_trial) { landmark_culler_.Replace(std::move(on_trial)); }
+  const LandmarkCuller::OnTrial& on_trial() const { return landmark_culler_.on_trial(); }
+  void Restore(LandmarkCuller::OnTrial on_trial) { landmark_culler_.Replace(std::move(on_trial)); }
 
-  /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more,
-  /// together with the radial distortion that the calibration left.
+  /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more.
   void Finish(SlamMap* map);
 
-  /// What Finish found last; 0 before.
+  /// Radial distortion that the last Finish believed; 0 before.
   double remaining_radial() const { return remaining_radial_; }
 
  private:
@@ -88,6 +86,7 @@ class LocalMapper {
   LandmarkCuller landmark_culler_;
   KeyframeCuller keyframe_culler_;
   LocalBundleAdjuster bundle_adjuster_;
+  FinalAdjuster final_adjuster_;
   MovingLandmarkPlacer moving_placer_;
   MergeSlot slot_;
   KeyframeId newest_ = kNoId;

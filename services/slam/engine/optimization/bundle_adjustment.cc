@@ -114,6 +114,7 @@ void Solve(const CameraModel& camera, const BundleOptions& bundle_options, bool 
   if (cancelled != nullptr) options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  if (robust) bundle->robust_cost = summary.final_cost;
   for (size_t i = 0; i < poses.size(); ++i) {
     if (!bundle->cameras[i].fixed) bundle->cameras[i].camera_from_map = ReadPose(poses[i].data());
   }

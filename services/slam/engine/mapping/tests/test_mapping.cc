@@ -129,10 +129,40 @@ TEST(LandmarkCuller, RemovesWhatIsRarelyFoundOrSeen) {
     map.EraseObservation(rarely_seen, rarely_seen->observations.rbegin()->first);
   LandmarkCuller culler;
   culler.Add(ids);
-  culler.Cull(&map, 3);
+  culler.Cull(&map);
   EXPECT_EQ(map.FindLandmark(ids[0]), nullptr);
+  EXPECT_NE(map.FindLandmark(ids[2]), nullptr) << "one keyframe after it there was no chance to be seen often";
+  culler.Cull(&map);
   EXPECT_NE(map.FindLandmark(ids[1]), nullptr);
   EXPECT_EQ(map.FindLandmark(ids[2]), nullptr);
+  EXPECT_GT(culler.on_trial().size(), 0u);
+  culler.Cull(&map);
+  EXPECT_EQ(culler.on_trial().size(), 0u);
+}
+
+TEST(LandmarkCuller, EndsTheTrialOfLandmarksOfAMapThatWasMerged) {
+  const Scene scene(100, 2, 6, 10);
+  SlamMap elder = MapOf(scene, TestCamera(), Row(4, 0.2));
+  SlamMap absorbed(7, TestScales());
+  for (int k = 0; k < 3; ++k) {
+    absorbed.InsertKeyframe(scene.Observe(TestCamera(), TestScales(), CameraAt({0.2 * k, 0, 0}), 1000 + k));
+  }
+  Landmark& seen_thrice = absorbed.CreateLandmark(scene.points()[0], int64_t{7} << 32, {});
+  Landmark& seen_twice = absorbed.CreateLandmark(scene.points()[1], int64_t{7} << 32, {});
+  for (int k = 0; k < 3; ++k) {
+    absorbed.Observe(&seen_thrice, (int64_t{7} << 32) + k, 0);
+    if (k < 2) absorbed.Observe(&seen_twice, (int64_t{7} << 32) + k, 1);
+  }
+  const LandmarkId kept = seen_thrice.id, removed = seen_twice.id;
+  LandmarkCuller culler;
+  culler.Add({kept, removed});
+  culler.Cull(&absorbed);
+  elder.Absorb(std::move(absorbed), SimilarityTransform());
+  culler.Cull(&elder);
+  culler.Cull(&elder);
+  EXPECT_NE(elder.FindLandmark(kept), nullptr);
+  EXPECT_EQ(elder.FindLandmark(removed), nullptr);
+  EXPECT_TRUE(culler.on_trial().empty());
 }
 
 TEST(KeyframeCuller, CullsWhatOthersSeeTooButNeverTheFirst) {

@@ -88,7 +88,7 @@ TEST(LandmarkCuller, CountsTheRightImageAsAView) {
   }
   LandmarkCuller culler;
   culler.Add(made);
-  culler.Cull(&map, 2);
+  for (int keyframe = 0; keyframe < 2; ++keyframe) culler.Cull(&map);
   EXPECT_EQ(map.landmark_count(), static_cast<int>(seen_again));
 }
 

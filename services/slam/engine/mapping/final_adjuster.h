@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/camera_model.h"
+#include "map/slam_map.h"
+#include "optimization/map_bundle.h"
+
+namespace kinemap {
+
+struct FinalAdjusterOptions {
+  int keyframes = 1000;  ///< newest, that move
+  /// Errors that a local window leaves behind bend the map only little a frame, so the end needs a finer tolerance.
+  BundleOptions bundle{20, 20, 1e-8, 0.01};
+  /// Part of the cost that what calibration left must explain to be believed. On KITTI it explains more than a
+  /// hundredth. Small errors of the features' places, which grow with the distance from the axis too, explain up to a
+  /// thousandth of a perfect camera's cost, by a distortion that is not there and bends the map.
+  double least_explained = 0.005;
+};
+
+/// Adjusts a whole map once more, with the camera as it is calibrated or, where that explains the images clearly
+/// better, with what calibration left; that always where depths are measured, which keep the map from bending and take
+/// their scale from the right image's place.
+class FinalAdjuster {
+ public:
+  FinalAdjuster(const FinalAdjusterOptions& options, const CameraModel& camera) : options_(options), camera_(camera) {}
+
+  /// Returns the radial distortion that was believed, 0 for none (see BundleProblem::radial).
+  double Adjust(SlamMap* map) const;
+
+ private:
+  FinalAdjusterOptions options_;
+  CameraModel camera_;
+};
+
+}  // namespace kinemap
