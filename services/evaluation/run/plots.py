@@ -128,6 +128,10 @@ def plot_density(densities: Mapping[int, Density], path: Path) -> None:
     axes.set_ylim(bottom=0)
     axes.set_xlabel("frame")
     axes.set_ylabel("moving points around the camera")
+    if densities:
+        newest = densities[max(densities)]
+        unit = "m" if newest.metric_scale else "map units"
+        axes.set_ylabel(f"moving points within {newest.radius:g} {unit}")
     axes.set_title("density")
     axes.legend(loc="upper left", fontsize=8)
     save_figure(figure, path)

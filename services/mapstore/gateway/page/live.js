@@ -140,9 +140,10 @@ function drawScale() {
   pen.lineWidth = 1.5;
   pen.strokeRect(18, bottom - 5, length * view.scale, 0);
   pen.font = "12px system-ui, sans-serif";
-  pen.fillText(`${length} ${pose && pose.scale === "metric" ? "m" : "map units"}`, 18, bottom - 11);
+  pen.fillText(`${length} ${unit()}`, 18, bottom - 11);
 }
 
+const unit = () => pose && pose.scale === "metric" ? "m" : "map units";
 const number = (value, digits = 1) => value.toFixed(digits);
 
 function rows(list, pairs) {
@@ -166,7 +167,7 @@ function tell() {
     ["window", density.window === "all" ? "all" : `${density.window} s`],
   ]);
   rows(byId("pose"), pose.position
-    ? [["x, y, z", pose.position.map((n) => number(n, 2)).join(", ")], ["tracking", pose.tracking]]
+    ? [[`x, y, z in ${unit()}`, pose.position.map((n) => number(n, 2)).join(", ")], ["tracking", pose.tracking]]
     : [["tracking", pose.tracking], ["", pose.reason]]);
   byId("counts").textContent = `${points.length / 3} points drawn, ${way.length / 2} poses`;
 }
