@@ -126,6 +126,10 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   std::vector<LandmarkMatch> matches = Project(sides, fine.first_from_second, keyframe_id, kNarrowRadiusPx);
   if (matches.size() < static_cast<size_t>(options_.min_matches)) return std::nullopt;
   if (!IsConfirmed(sides, fine.first_from_second)) return std::nullopt;
+  if (&map == &candidate_map &&
+      !IsWithinDrift(options_.drift, map, keyframe_id, candidate_id, fine.first_from_second.Inverse(), fixed_scale)) {
+    return std::nullopt;
+  }
 
   // Of cameras in their maps' units, turned into one of what is anchored at the two.
   const SimilarityTransform candidate_anchor(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(),

@@ -6,6 +6,7 @@
 
 #include "geometry/random_engine.h"
 #include "geometry/sim3_ransac.h"
+#include "loop_closing/drift_bound.h"
 #include "loop_closing/place_matcher.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
@@ -20,6 +21,7 @@ struct LoopVerifierOptions {
   int min_neighbor_matches = 25;  ///< the same in a neighbour of the keyframe, which then confirms it
   int min_confirmations = 2;      ///< such neighbours, of the five that share most
   Sim3RansacOptions ransac;
+  DriftBoundOptions drift;
 };
 
 /// A place that a keyframe shows again.
@@ -33,8 +35,9 @@ struct VerifiedLoop {
 };
 
 /// Makes sure that two keyframes show one place: matches by words, a similarity between the two cameras by RANSAC and
-/// optimisation, and enough landmarks around the candidate found again in the keyframe and in its neighbours
-/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A).
+/// optimisation, enough landmarks around the candidate found again in the keyframe and in its neighbours
+/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A), and, within one
+/// map, a way on which so much may have been lost.
 class LoopVerifier {
  public:
   /// With `fixed_scale` both sides are in the same units.
