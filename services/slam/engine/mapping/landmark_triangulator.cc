@@ -14,6 +14,10 @@ constexpr double kEpipolarBound = 3.841;  // 95 % of chi-squared, one degree of 
 constexpr double kEpipoleBound = 100;     // squared pixels: near the epipole a line tells nothing
 constexpr double kMarginPx = 10;          // beyond both ends and, at the coarsest octave, beside the line
 constexpr double kScaleTolerance = 1.5;   // times one octave's factor
+// Best over second descriptor distance: what repeats along the line, such as a facade's windows, is left unmatched.
+constexpr double kMatchRatio = 0.8;
+constexpr double kSameSpotPx = 4;  // keypoints of several octaves at one spot are no rivals
+constexpr int kNoRival = 257;      // beyond any distance
 
 bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
   if (a.role != b.role) return false;
@@ -69,7 +73,7 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
   const Eigen::Vector2d far_px = camera_.Project(direction);
   Eigen::Vector3d line = pair.fundamental * point.pixel_px.homogeneous();
   line /= line.head<2>().norm();
-  int best = -1, best_distance = kStrictHammingDistance;
+  int best = -1, best_distance = kStrictHammingDistance, rival_distance = kNoRival;
   pair.second.features->grid.VisitAlong(
       far_px, near_px, kMarginPx * point.spread, [&](const KeypointGrid::Entry& entry) {
         const Keypoint& candidate = pair.second.features->keypoints[entry.index];
@@ -78,12 +82,18 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
         if (off_line * off_line >= kEpipolarBound * scale * scale || taken[entry.index]) return;
         if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
         const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
-        if (distance >= best_distance) return;
+        const bool elsewhere =
+            best < 0 || (candidate.pixel_px - pair.second.features->keypoints[best].pixel_px).norm() > kSameSpotPx;
+        if (distance >= best_distance) {
+          if (elsewhere) rival_distance = std::min(rival_distance, distance);
+          return;
+        }
         if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
+        if (best >= 0 && elsewhere) rival_distance = best_distance;
         best = entry.index;
         best_distance = distance;
       });
-  return best;
+  return best_distance < kMatchRatio * rival_distance ? best : -1;
 }
 
 bool LandmarkTriangulator::PointOfMatch(const SlamMap& map, const Pair& pair, int keypoint, int match,

@@ -27,6 +27,7 @@ class HalfMapped : public ::testing::Test {
     std::map<int, std::pair<int, int>> keypoints;
     for (int k = 0; k < 2; ++k) {
       Frame frame = scene_.Observe(TestCamera(), TestScales(), CameraAt({0.6 * k, 0, 0}), 100 * (k + 1), 0.2, label);
+      if (all_unmapped_look_alike_) MakeUnmappedLookAlike(&frame);
       map_.InsertKeyframe(frame);
       for (int i = 0; i < frame.size(); ++i) {
         const int point = scene_.observed_points()[i];
@@ -50,7 +51,16 @@ class HalfMapped : public ::testing::Test {
     map_.UpdateCovisibility(1);
   }
 
+  void MakeUnmappedLookAlike(Frame* frame) const {
+    auto features = std::make_shared<FrameFeatures>(*frame->features);
+    for (int i = 0; i < frame->size(); ++i) {
+      if (scene_.observed_points()[i] % 2 == 1) features->descriptors[i] = {};
+    }
+    frame->features = features;
+  }
+
   Scene scene_{300, 3, 6, 14};
+  bool all_unmapped_look_alike_ = false;
   SlamMap map_{0, TestScales()};
   std::map<int, int> point_of_keypoint_;  // unmapped points by the second keyframe's keypoint
 };
@@ -65,6 +75,17 @@ TEST_F(HalfMapped, TriangulatesTheRestWhereItIs) {
     EXPECT_LT((map_.PositionInMap(landmark) - truth).norm(), 0.1 * truth.norm());
     EXPECT_EQ(landmark.observations.size(), 2u);
   }
+}
+
+TEST_F(HalfMapped, WhatRepeatsAlongTheEpipolarLineIsNotTriangulated) {
+  for (size_t point = 1; point < scene_.points().size(); point += 2) {
+    scene_.points()[point].y() = 0.5;
+    scene_.points()[point].z() = 8;
+  }
+  all_unmapped_look_alike_ = true;
+  Make(nullptr);
+  ASSERT_GT(point_of_keypoint_.size(), 20u);
+  EXPECT_TRUE(LandmarkTriangulator({}, TestCamera()).Triangulate(&map_, 1).empty());
 }
 
 TEST_F(HalfMapped, ObjectsOutOfTrackingAreMappedWithTheirLabel) {
