@@ -15,8 +15,9 @@ import numpy as np
 
 from services.slam import _engine
 from tests.benchmark.measurements_page import markdown_table, put
+from tests.benchmark.slam.engine_pass import EnginePass
 from tests.benchmark.slam.engine_run import EngineRun
-from tests.benchmark.slam.mask_objects import MaskObjects
+from tests.benchmark.slam.sequence_part import SequencePart
 
 ORB_EVERY = 10
 FEATURES = 2000
@@ -41,22 +42,19 @@ def resident_mb() -> float:
 
 def measure(sequence: Path, frames: int | None, rate_hz: float | None, threads: int) -> Measured:
     """Drive the engine through the sequence's left images; every object of `instances/` counts as standing."""
-    line = next(line for line in (sequence / "calib.txt").read_text().splitlines() if line.startswith("P0"))
-    p = np.array(line.split()[1:], float).reshape(3, 4)
-    paths = sorted((sequence / "image_0").iterdir())[:frames]
-    objects = MaskObjects(sequence / "instances", [path.stem for path in paths])
-    options = _engine.EngineOptions()
+    part = SequencePart(sequence, frames=frames)
+    options = EnginePass((part,)).engine_options()
     options.features, options.threads = FEATURES, threads
     orb = cv2.ORB.create(FEATURES)
     cv2.setNumThreads(1)
     measured: Measured | None = None
     before_mb = 0.0
     started = time.perf_counter()
-    for index, path in enumerate(paths):
-        image = np.asarray(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), np.uint8)
+    for index, frame in enumerate(part.read()):
+        image = frame.image
         if measured is None:
             before_mb = resident_mb()
-            camera = _engine.CameraModel(image.shape[1], image.shape[0], p[0, 0], p[1, 1], p[0, 2], p[1, 2])
+            camera = _engine.CameraModel(image.shape[1], image.shape[0], *part.intrinsics())
             measured = Measured(EngineRun(_engine.Engine(camera, options)))
         if index % ORB_EVERY == 0:
             start = time.perf_counter()
@@ -65,7 +63,7 @@ def measure(sequence: Path, frames: int | None, rate_hz: float | None, threads: 
         if rate_hz is not None:
             time.sleep(max(0.0, started + index / rate_hz - time.perf_counter()))
         start = time.perf_counter()
-        measured.run.step(image, objects)
+        measured.run.step(frame)
         measured.seconds += time.perf_counter() - start
         measured.resident_mb.append(resident_mb() - before_mb)
     if measured is None:
