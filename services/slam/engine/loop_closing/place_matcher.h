@@ -6,6 +6,7 @@
 #include "features/bag_of_words.h"
 #include "geometry/camera_model.h"
 #include "map/landmark_search.h"
+#include "map/lasting.h"
 #include "map/slam_map.h"
 
 namespace kinemap {
@@ -16,14 +17,6 @@ struct LandmarkMatch {
   LandmarkId landmark_id;
   int distance;  ///< between the descriptors, in bits
 };
-
-/// Whether a landmark will still be where it was another time: parked cars drive off.
-inline bool IsLasting(const Landmark& landmark) {
-  return landmark.valid_until_ns == kStillValid && landmark.state == MotionState::kStatic;
-}
-inline bool IsLasting(const FeatureLabel& label) {
-  return label.role == FeatureRole::kTracked && label.state == MotionState::kStatic;
-}
 
 /// Lasting landmarks of these keyframes, ascending.
 std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes);

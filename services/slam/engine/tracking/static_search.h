@@ -5,14 +5,10 @@
 
 #include "geometry/camera_model.h"
 #include "map/frame.h"
+#include "map/lasting.h"
 #include "map/slam_map.h"
 
 namespace kinemap {
-
-/// Whether a landmark will be where it was another day: parked cars drive off.
-inline bool IsLasting(const Landmark& landmark) {
-  return landmark.valid_until_ns == kStillValid && landmark.state == MotionState::kStatic;
-}
 
 /// Static landmarks that these keyframes observe, each once, in the keyframes' order.
 std::vector<LandmarkId> StaticLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes);
