@@ -203,7 +203,10 @@ class Engine:
     def settle(self) -> None:
         """Merge what the background holds; for a snapshot that is exact."""
     def load_maps(self, path: str) -> None:
-        """Begin in another session's maps. ValueError that names the file when it cannot be used; before any frame."""
+        """Begin in another session's maps. ValueError that names the file when it cannot be used.
+
+        RuntimeError when this engine has a map or saw a frame.
+        """
     def resume_maps(self, path: str, first_free_map_id: int) -> None:
         """The same with this session's maps, after a fall; new ids come from blocks from `first_free_map_id` on."""
     def save_maps(self, path: str, in_background: bool) -> None:

@@ -6,13 +6,15 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:-3600}
 shift || true
+fuzzers=("$@")
+if [ ${#fuzzers[@]} -eq 0 ]; then fuzzers=($(basename -s .cc services/slam/engine/fuzz/fuzz_*.cc)); fi
 build=build/fuzz
 clang=${CLANGXX:-$(command -v clang++ || command -v clang++-14)}
 cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER="$clang" \
-  -DKINEMAP_BUILD_FUZZERS=ON -DKINEMAP_SANITIZE=address,undefined -DKINEMAP_BUILD_BINDINGS=OFF >/dev/null
-cmake --build $build | tail -n 1
-fuzzers=("$@")
-if [ ${#fuzzers[@]} -eq 0 ]; then fuzzers=($(cd $build/services/slam/engine && ls -d fuzz_* | grep -v '\.')); fi
+  -DKINEMAP_BUILD_FUZZERS=ON -DKINEMAP_SANITIZE=address,undefined -DKINEMAP_BUILD_BINDINGS=OFF \
+  ${CCACHE_DIR:+-DCMAKE_CXX_COMPILER_LAUNCHER=ccache} >/dev/null
+# What the fuzzers link alone: the layers above it are not needed.
+cmake --build $build --target "${fuzzers[@]}" | tail -n 1
 for fuzzer in "${fuzzers[@]}"; do
   corpus=$build/corpus/$fuzzer
   mkdir -p "$corpus"

@@ -278,7 +278,7 @@ void Engine::Track(Frame* frame, TrackingResult* result) {
   result->tracked_landmarks = pose.estimate.inliers;
   if (!pose.tracked) {
     lost_policy_.Lost();
-    if (lost_policy_.lost_frames() == 1) Settle();  // so that maps stay as they are while the camera is looked for
+    if (lost_policy_.lost_frames() == 1) SettleMaps();  // so that maps stay as they are while the camera is looked for
     RecoverInOtherMaps(frame, result);
     return;
   }
@@ -362,7 +362,7 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 
 void Engine::Flush() {
   if (options_.localize_only) return;
-  Settle();
+  SettleMaps();
   for (const auto& other : atlas_.maps()) {
     if (other.get() != map()) mapper_.Finish(other.get());
   }

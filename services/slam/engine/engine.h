@@ -71,22 +71,25 @@ class Engine {
   /// next call of this or of BeginFrame, and so is reported after the next frame; nothing is left after Flush.
   MapUpdate TakeUpdate();
 
-  /// Merges what the background holds, so that a snapshot has it too.
+  /// Merges what the background holds, so that a snapshot or checkpoint has it too.
   void Settle();
 
-  /// All maps, and what the session carries from frame to frame. What the background holds is left out.
+  /// All maps. What the background holds is left out.
   MapSnapshot Snapshot();
+
+  /// Settles, and takes all maps and all else that is carried from frame to frame.
+  MapSnapshot Checkpoint();
 
   /// Takes in another session's maps, in an engine that has seen no frame. The camera must be recognised in one of
   /// them; only when it is not for `new_map_after_lost` frames does it get a map of its own. The next update tells of
-  /// everything loaded. Throws MapFileError that names the file.
+  /// everything loaded. Throws MapFileError that names the file, std::logic_error when this engine has a map or frame.
   void LoadMaps(const std::string& path);
 
   /// The same with this session's maps, after a fall. Ids from `first_free_map_id` << 32 on were never used, so that
   /// what is mapped now is not taken for what was mapped after the snapshot and forgotten.
   void ResumeMaps(const std::string& path, int64_t first_free_map_id);
 
-  /// Goes on exactly where a settled engine of the same options took this snapshot; what happens next is the same to
+  /// Goes on exactly where an engine of the same options took this checkpoint; what happens next is the same to
   /// the last bit. Throws MapFileError.
   void RestoreState(const std::vector<uint8_t>& bytes);
 
@@ -95,6 +98,9 @@ class Engine {
   void FinishMapping();
   template <typename Archive>
   void SessionFields(Archive& archive);
+  void RequireUnused() const;
+  void RestoreSemiDense(SemiDenseState state);
+  void SettleMaps();
   void BeginInLoadedMaps();
   bool WaitToBeRecognised(TrackingResult* result);
   Frame MakeFrame(const FrameObjects& objects);

@@ -63,7 +63,10 @@ class PassReport:
     culled: int
     landmarks: dict[int, int]
     wall_ms: Array
+    cpu_ms: Array
     rss_mb: Array
+    sizes: npt.NDArray[np.int64]
+    """(frames, 2): live keyframes, landmarks after each frame"""
     stage_ms: dict[str, float]
     states: npt.NDArray[np.int64]
     reasons: list[str]
@@ -114,7 +117,9 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         culled=len(run.culled),
         landmarks=dict(sorted(Counter(run.landmarks.values()).items())),
         wall_ms=np.array(run.wall_ms),
+        cpu_ms=np.array(run.cpu_ms),
         rss_mb=np.array(run.rss_mb),
+        sizes=np.array(run.sizes),
         stage_ms={stage: round(float(np.mean([row[stage] for row in stages])), 1) for stage in stages[0]},
         states=np.array([result.state for result in run.results]),
         reasons=[result.reason for result in run.results],

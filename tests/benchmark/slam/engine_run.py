@@ -24,6 +24,25 @@ TRACKING = 1
 FRAME_NS = 100_000_000
 
 
+class FrameClock:
+    """Processor time of this process from frame to frame, without what this thread does between them (it reads)."""
+
+    def __init__(self) -> None:
+        self._process_s = time.process_time()
+        self._thread_s = time.thread_time()
+        self._reading_s = 0.0
+
+    def begin(self) -> None:
+        """A frame was read."""
+        self._reading_s = time.thread_time() - self._thread_s
+
+    def end_ms(self) -> float:
+        """Time since the last call."""
+        before, self._process_s = self._process_s, time.process_time()
+        self._thread_s = time.thread_time()
+        return (self._process_s - before - self._reading_s) * 1e3
+
+
 @dataclass
 class EngineRun:
     """Frame poses relative to keyframes, the keyframes' newest poses, and a digest of every byte that came out."""
@@ -39,15 +58,21 @@ class EngineRun:
     """landmark -> state"""
     results: list[_engine.TrackingResult] = field(default_factory=list)
     wall_ms: list[float] = field(default_factory=list)
+    cpu_ms: list[float] = field(default_factory=list)
+    """processor time of all threads for a frame, with what the background did since the frame before"""
     rss_mb: list[float] = field(default_factory=list)
     """resident memory of this process after each frame"""
+    sizes: list[tuple[int, int]] = field(default_factory=list)
+    """live keyframes and landmarks after each frame"""
     digest: "hashlib._Hash" = field(default_factory=hashlib.sha256)
+    _clock: FrameClock = field(default_factory=FrameClock)
     on_update: Callable[[Update], None] | None = None
     """gets every map update, for what is not kept here"""
 
     def step(self, frame: SequenceFrame) -> None:
         """Track the next frame."""
         index, objects = len(self.results), frame.objects
+        self._clock.begin()
         start = time.perf_counter()
         self.engine.begin_frame((index + 1) * FRAME_NS, frame.image, frame.right)
         result = self.engine.finish_frame(*objects, masks_fresh=True)
@@ -58,6 +83,8 @@ class EngineRun:
             self.relative[index] = (result.reference_keyframe_id, result.camera_from_reference)
             self.digest.update(result.map_from_camera.tobytes())
         self._take()
+        self.cpu_ms.append(self._clock.end_ms())
+        self.sizes.append((len(self.keyframes) - len(self.culled), len(self.landmarks)))
 
     def finish(self) -> None:
         """The end of the input."""

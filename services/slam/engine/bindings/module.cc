@@ -82,8 +82,7 @@ class LockedEngine {
   void Checkpoint(const std::string& path) {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    engine_->Settle();
-    const std::vector<uint8_t> bytes = engine_->Snapshot().Bytes();
+    const std::vector<uint8_t> bytes = engine_->Checkpoint().Bytes();
     WriteFileAtomically(path, bytes);
     Restore(bytes);
   }

@@ -16,6 +16,7 @@ class FeatureBudget {
 
   /// Between `wanted` and twice as many.
   int next() const { return next_; }
+  void Restore(int next) { next_ = next; }
 
   /// Takes in the labels of the newest frame's features.
   void Observe(const std::vector<FeatureLabel>& labels);

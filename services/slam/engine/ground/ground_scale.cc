@@ -159,6 +159,15 @@ void GroundScale::Finish(SlamMap* map) {
   ApplyScaleField(changes, map);
 }
 
+void GroundScale::Restore(GroundScaleState state) {
+  odometer_.Restore(std::move(state.odometer));
+  samples_ = std::move(state.samples);
+  map_id_ = state.map_id;
+  log_scale_ = state.log_scale;
+  corrected_at_ = state.corrected_at;
+  plane_ = state.plane;
+}
+
 void GroundScale::Restart(const SlamMap& map) {
   map_id_ = map.map_id();
   odometer_.Forget();

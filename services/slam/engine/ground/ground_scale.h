@@ -10,6 +10,16 @@
 
 namespace kinemap {
 
+/// What is carried from one frame to the next.
+struct GroundScaleState {
+  RoadOdometerState odometer;
+  std::vector<RoadSample> samples;
+  int64_t map_id = -1;
+  double log_scale = 0;
+  KeyframeId corrected_at = kNoId;
+  std::optional<GroundPlane> plane;
+};
+
 /// Metres for a monocular map from the height of its camera above the road: measured frame by frame, filtered over the
 /// way, brought into the map as a whole at first and, against drift, little by little in its newest keyframes.
 class GroundScale {
@@ -31,6 +41,9 @@ class GroundScale {
 
   /// The road under the frame observed last, in map units; of the last frames where this one did not show it.
   const std::optional<GroundPlane>& plane() const { return plane_; }
+
+  GroundScaleState state() const { return {odometer_.state(), samples_, map_id_, log_scale_, corrected_at_, plane_}; }
+  void Restore(GroundScaleState state);
 
  private:
   double RecentLogScale(const SlamMap& map) const;

@@ -28,14 +28,14 @@ double LengthInMap(const SlamMap& map, const RoadSample& sample) {
 }
 
 RoadOdometer::RoadOdometer(const CameraModel& camera, const Eigen::Vector3d& expected_normal)
-    : viewer_(camera), expected_normal_(expected_normal), recent_normal_(expected_normal) {}
+    : viewer_(camera), state_{expected_normal, expected_normal, 0, {}, std::nullopt} {}
 
-const RoadOdometer::PastView* RoadOdometer::PartnerOf(const SlamMap& map, const RigidTransform& map_from_camera,
-                                                      double expected_height, RigidTransform* older_from_newer) const {
-  const PastView* best = nullptr;
+const PastRoadView* RoadOdometer::PartnerOf(const SlamMap& map, const RigidTransform& map_from_camera,
+                                            double expected_height, RigidTransform* older_from_newer) const {
+  const PastRoadView* best = nullptr;
   double nearest = std::log(kLongestWay / kBestWay);
-  for (size_t back = 1; back <= views_.size(); ++back) {
-    const PastView& past = views_[views_.size() - back];
+  for (size_t back = 1; back <= state_.views.size(); ++back) {
+    const PastRoadView& past = state_.views[state_.views.size() - back];
     const RigidTransform candidate = map.CameraFromMap(past.from_reference, past.reference_id) * map_from_camera;
     const double way = candidate.translation.norm();
     if (expected_height > 0) {
@@ -53,46 +53,47 @@ const RoadOdometer::PastView* RoadOdometer::PartnerOf(const SlamMap& map, const 
 
 std::optional<RoadSample> RoadOdometer::Observe(const SlamMap& map, const Frame& frame, RoadView view,
                                                 double expected_height) {
-  height_.reset();
+  state_.height.reset();
   const RigidTransform map_from_camera = frame.camera_from_map.Inverse();
-  PastView now{std::move(view), frame.reference_keyframe_id,
-               map.CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id)};
+  PastRoadView now{std::move(view), frame.reference_keyframe_id,
+                   map.CameraFromReference(frame.camera_from_map, frame.reference_keyframe_id)};
   std::optional<RoadSample> sample;
   RigidTransform older_from_newer;
-  if (const PastView* past = PartnerOf(map, map_from_camera, expected_height, &older_from_newer)) {
+  if (const PastRoadView* past = PartnerOf(map, map_from_camera, expected_height, &older_from_newer)) {
     RoadAlignmentOptions options;
-    if (normals_ < kNormalsToLearn) options.tilt_sigma_rad = kWideTiltSigma;
+    if (state_.normals < kNormalsToLearn) options.tilt_sigma_rad = kWideTiltSigma;
     const double way = older_from_newer.translation.norm();
     const double low = expected_height > 0 ? expected_height / kSearchedAround : way / kMostHeightsAtFirst;
     const double high = expected_height > 0 ? expected_height * kSearchedAround : way / kFewestHeightsAtFirst;
     const std::optional<RoadMeasurement> road =
-        RoadAlignment(options, viewer_).Align(now.view, past->view, older_from_newer, expected_normal_, low, high);
+        RoadAlignment(options, viewer_)
+            .Align(now.view, past->view, older_from_newer, state_.expected_normal, low, high);
     if (road) {
-      height_ = road->plane.height;
+      state_.height = road->plane.height;
       LearnNormal(road->plane.normal);
       sample = RoadSample{frame.timestamp_ns, past->reference_id,       now.reference_id, past->from_reference,
                           now.from_reference, way / road->plane.height, road->sigma};
     }
   }
-  if (!views_.empty()) {
-    const PastView& last = views_.back();
+  if (!state_.views.empty()) {
+    const PastRoadView& last = state_.views.back();
     const double moved =
         (map.CameraFromMap(last.from_reference, last.reference_id) * map_from_camera).translation.norm();
     if (moved < kLeastSpacing * expected_height) return sample;
   }
-  views_.push_back(std::move(now));
-  if (views_.size() > kViews) views_.pop_front();
+  state_.views.push_back(std::move(now));
+  if (state_.views.size() > kViews) state_.views.pop_front();
   return sample;
 }
 
 void RoadOdometer::LearnNormal(const Eigen::Vector3d& normal) {
-  ++normals_;
-  const double mean_gain = 1.0 / (normals_ + 3);
+  ++state_.normals;
+  const double mean_gain = 1.0 / (state_.normals + 3);
   const auto follow = [&](double gain, Eigen::Vector3d* mean) {
     *mean = (*mean + std::max(gain, mean_gain) * (normal - *mean)).normalized();
   };
-  follow(kNormalGain, &expected_normal_);
-  follow(kRecentNormalGain, &recent_normal_);
+  follow(kNormalGain, &state_.expected_normal);
+  follow(kRecentNormalGain, &state_.recent_normal);
 }
 
 }  // namespace kinemap

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <optional>
+#include <utility>
 
 #include "ground/road_alignment.h"
 #include "map/frame.h"
@@ -23,6 +24,21 @@ struct RoadSample {
 /// Length of a sample's way as the map has it now.
 double LengthInMap(const SlamMap& map, const RoadSample& sample);
 
+/// A frame's view of the road, and where it was taken.
+struct PastRoadView {
+  RoadView view;
+  KeyframeId reference_id = kNoId;
+  RigidTransform from_reference;
+};
+
+/// What the odometer carries from one frame to the next.
+struct RoadOdometerState {
+  Eigen::Vector3d expected_normal, recent_normal;
+  int normals = 0;
+  std::deque<PastRoadView> views;
+  std::optional<double> height;
+};
+
 /// Keeps the last frames' views of the road and aligns each new one with one of them that is about a camera height
 /// away. Of a camera that stands or turns on the spot it learns nothing.
 class RoadOdometer {
@@ -37,29 +53,23 @@ class RoadOdometer {
   std::optional<RoadSample> Observe(const SlamMap& map, const Frame& frame, RoadView view, double expected_height);
 
   /// Height of the camera above the road, map units, if the frame observed last saw the road.
-  const std::optional<double>& height() const { return height_; }
+  const std::optional<double>& height() const { return state_.height; }
   /// Mean of the road's last normals in the camera frame: one frame's alone is worth a degree only.
-  const Eigen::Vector3d& normal() const { return recent_normal_; }
+  const Eigen::Vector3d& normal() const { return state_.recent_normal; }
 
   /// Forgets the views: what comes next is in another map.
-  void Forget() { views_.clear(); }
+  void Forget() { state_.views.clear(); }
+
+  const RoadOdometerState& state() const { return state_; }
+  void Restore(RoadOdometerState state) { state_ = std::move(state); }
 
  private:
-  struct PastView {
-    RoadView view;
-    KeyframeId reference_id;
-    RigidTransform from_reference;
-  };
-
-  const PastView* PartnerOf(const SlamMap& map, const RigidTransform& map_from_camera, double expected_height,
-                            RigidTransform* older_from_newer) const;
+  const PastRoadView* PartnerOf(const SlamMap& map, const RigidTransform& map_from_camera, double expected_height,
+                                RigidTransform* older_from_newer) const;
   void LearnNormal(const Eigen::Vector3d& normal);
 
   RoadViewer viewer_;
-  Eigen::Vector3d expected_normal_, recent_normal_;
-  int normals_ = 0;
-  std::deque<PastView> views_;
-  std::optional<double> height_;
+  RoadOdometerState state_;
 };
 
 }  // namespace kinemap

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "geometry/camera_model.h"
 #include "loop_closing/background_slot.h"
@@ -39,6 +41,12 @@ struct LoopEvents {
   double background_ms = 0;  ///< processor time of the solving; for reports only
 };
 
+/// What a settled loop closer carries from one keyframe to the next.
+struct LoopCloserState {
+  std::vector<LoopDetector::Group> candidates;
+  int keyframes_since_loop = 0;
+};
+
 /// Recognises places in all maps and makes them one: a loop's error is distributed over its map by the essential graph,
 /// another map is merged into one; then landmarks are fused and the whole map is adjusted (Mur-Artal, Montiel and
 /// Tardos 2015, section VII). What is solved is solved in the background and merged at frames fixed in advance.
@@ -57,6 +65,12 @@ class LoopCloser {
 
   /// Merges all that is pending, whatever frame it is due.
   LoopEvents Settle(Atlas* atlas);
+
+  LoopCloserState state() const { return {detector_.last(), keyframes_since_}; }
+  void Restore(LoopCloserState state) {
+    detector_.Restore(std::move(state.candidates));
+    keyframes_since_ = state.keyframes_since_loop;
+  }
 
  private:
   /// An essential graph as it was copied and as it is solved; without nodes when a map is to be merged.

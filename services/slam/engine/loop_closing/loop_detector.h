@@ -2,6 +2,7 @@
 #pragma once
 
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "map/atlas.h"
@@ -28,12 +29,15 @@ class LoopDetector {
   /// Starts counting anew.
   void Forget() { last_.clear(); }
 
- private:
   /// A candidate with its neighbours, and how many keyframes in a row have found it.
   struct Group {
     std::set<KeyframeId> keyframes;
-    int streak;
+    int streak = 0;
   };
+  const std::vector<Group>& last() const { return last_; }
+  void Restore(std::vector<Group> last) { last_ = std::move(last); }
+
+ private:
   double LeastSimilarity(const SlamMap& map, const PlaceIndex& places, KeyframeId keyframe_id) const;
   int StreakOf(const std::set<KeyframeId>& keyframes) const;
 

@@ -10,8 +10,8 @@ constexpr size_t kLeastLandmarks = 30;
 }
 
 void LateMetricScale::Look(const SlamMap& map, KeyframeId keyframe_id) {
-  if (map.map_id() != map_id_) metres_per_unit_.clear();
-  map_id_ = map.map_id();
+  if (map.map_id() != state_.map_id) state_.metres_per_unit.clear();
+  state_.map_id = map.map_id();
   const Keyframe& keyframe = map.keyframe(keyframe_id);
   const RigidTransform keyframe_from_map = keyframe.map_from_keyframe.Inverse();
   for (size_t i = 0; i < keyframe.landmark_ids.size(); ++i) {
@@ -19,18 +19,18 @@ void LateMetricScale::Look(const SlamMap& map, KeyframeId keyframe_id) {
     const double measured_m = keyframe.features->keypoints[i].depth_m;
     if (landmark == nullptr || !landmark->IsTrackable() || measured_m <= 0) continue;
     const double mapped = (keyframe_from_map * map.PositionInMap(*landmark)).z();
-    if (mapped > 0) metres_per_unit_[landmark->id] = measured_m / mapped;
+    if (mapped > 0) state_.metres_per_unit[landmark->id] = measured_m / mapped;
   }
 }
 
-bool LateMetricScale::IsFound() const { return metres_per_unit_.size() >= kLeastLandmarks; }
+bool LateMetricScale::IsFound() const { return state_.metres_per_unit.size() >= kLeastLandmarks; }
 
 double LateMetricScale::Apply(SlamMap* map) {
   std::vector<double> ratios;
-  for (const auto& [id, ratio] : metres_per_unit_) ratios.push_back(ratio);
+  for (const auto& [id, ratio] : state_.metres_per_unit) ratios.push_back(ratio);
   std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
   const double scale = ratios[ratios.size() / 2];
-  metres_per_unit_.clear();
+  state_.metres_per_unit.clear();
   const Eigen::Vector3d origin = map->keyframe(map->first_keyframe_id()).map_from_keyframe.translation;
   const SimilarityTransform metric_from_map(Eigen::Quaterniond::Identity(), (1 - scale) * origin, scale);
   for (const KeyframeId id : map->LiveKeyframes()) map->SetKeyframePose(id, metric_from_map * map->MapFromAnchor(id));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 
 #include "map/slam_map.h"
 
@@ -20,9 +21,16 @@ class LateMetricScale {
   /// where it is. Returns the metres of one of the map's former units. Nothing may be in the background.
   double Apply(SlamMap* map);
 
+  /// What was compared so far, in which map.
+  struct State {
+    int64_t map_id = -1;
+    std::map<LandmarkId, double> metres_per_unit;
+  };
+  const State& state() const { return state_; }
+  void Restore(State state) { state_ = std::move(state); }
+
  private:
-  int64_t map_id_ = -1;
-  std::map<LandmarkId, double> metres_per_unit_;
+  State state_;
 };
 
 }  // namespace kinemap

@@ -35,13 +35,23 @@ void SemiDenseMapper::Collect(int64_t frame_index) {
   while (!under_way_.empty() && under_way_.front().due_frame <= frame_index) CollectFirst();
 }
 
+void SemiDenseMapper::Settle() {
+  while (!under_way_.empty()) CollectFirst();
+}
+
+void SemiDenseMapper::Restore(SemiDenseState state) {
+  window_.Restore(state.window);
+  keyframes_ = std::move(state.keyframes);
+  finished_ = std::move(state.finished);
+}
+
 void SemiDenseMapper::Finish(const SlamMap& map) {
   std::erase_if(keyframes_, [&](KeyframeId id) { return map.FindKeyframe(id) == nullptr; });
   WindowStep step = StepOf(map);
   step.is_last = true;
   Start(std::move(step), 0);
   keyframes_.clear();
-  while (!under_way_.empty()) CollectFirst();
+  Settle();
 }
 
 std::vector<SemiDenseCloud> SemiDenseMapper::TakeFinished() { return std::exchange(finished_, {}); }

@@ -30,6 +30,13 @@ class SemiDenseMapper {
   /// Takes the background's results that are due.
   void Collect(int64_t frame_index);
 
+  /// Waits for all that is under way and takes it, whatever frame it is due.
+  void Settle();
+
+  /// Of a settled mapper.
+  SemiDenseState state() const { return {keyframes_, window_.state(), finished_}; }
+  void Restore(SemiDenseState state);
+
   /// Nothing more comes to this map: finishes all keyframes that are still open, and waits for it.
   void Finish(const SlamMap& map);
 

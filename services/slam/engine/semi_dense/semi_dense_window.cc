@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "semi_dense/gradient_pixels.h"
@@ -35,6 +37,45 @@ std::vector<SemiDenseCloud> SemiDenseWindow::Advance(WindowStep step) {
   }
   if (step.is_last) entries_.clear();
   return finished;
+}
+
+std::deque<OpenKeyframe> SemiDenseWindow::state() const {
+  std::deque<OpenKeyframe> state;
+  for (const Entry& entry : entries_) {
+    OpenKeyframe& open = state.emplace_back();
+    open.view = entry.view;
+    open.view.gradient.release();
+    open.estimated = !entry.estimates.empty();
+    open.finished = entry.finished;
+    for (const cv::Point& pixel : entry.pixels) open.estimates.push_back(entry.estimates.At(pixel.x, pixel.y));
+  }
+  return state;
+}
+
+void SemiDenseWindow::Restore(const std::deque<OpenKeyframe>& state) {
+  entries_.clear();
+  for (const OpenKeyframe& open : state) {
+    Entry& entry = entries_.emplace_back();
+    entry.view = open.view;
+    ViewBuilder::AddGradient(&entry.view);
+    entry.finished = open.finished;
+    if (open.estimated) {
+      entry.estimates = InverseDepthImage(camera_.width_px(), camera_.height_px());
+      entry.pixels = GradientPixels(entry.view);
+    }
+    if (entry.pixels.size() != open.estimates.size()) {
+      throw std::invalid_argument("expected " + std::to_string(entry.pixels.size()) + " semi-dense estimates, got " +
+                                  std::to_string(open.estimates.size()));
+    }
+    for (size_t i = 0; i < entry.pixels.size(); ++i) {
+      entry.estimates.At(entry.pixels[i].x, entry.pixels[i].y) = open.estimates[i];
+    }
+  }
+}
+
+std::vector<cv::Point> SemiDenseWindow::GradientPixels(const KeyframeView& view) const {
+  if (!view.range.IsKnown()) return {};
+  return FindGradientPixels(view, options_.least_gradient, options_.most_pixels, kMarginPx);
 }
 
 std::vector<int> SemiDenseWindow::NeighborsOf(int index, int count) const {
@@ -73,8 +114,8 @@ InverseDepth SemiDenseWindow::EstimatePixel(const cv::Point& pixel, const DepthR
 void SemiDenseWindow::Estimate(int index, const Poses& map_from_anchor) {
   Entry& entry = entries_[index];
   entry.estimates = InverseDepthImage(camera_.width_px(), camera_.height_px());
-  if (!entry.view.range.IsKnown()) return;
-  entry.pixels = FindGradientPixels(entry.view, options_.least_gradient, options_.most_pixels, kMarginPx);
+  entry.pixels = GradientPixels(entry.view);
+  if (entry.pixels.empty()) return;
   const SimilarityTransform& map_from_own = map_from_anchor.at(entry.view.id);
   std::vector<EpipolarSearch> searches;
   for (const int other : NeighborsOf(index, options_.neighbors)) {

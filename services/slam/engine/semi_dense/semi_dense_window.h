@@ -13,6 +13,7 @@
 #include "semi_dense/keyframe_view.h"
 #include "semi_dense/semi_dense_cloud.h"
 #include "semi_dense/semi_dense_options.h"
+#include "semi_dense/semi_dense_state.h"
 #include "semi_dense/view_builder.h"
 
 namespace kinemap {
@@ -34,6 +35,10 @@ class SemiDenseWindow {
   /// Returns what this step finishes.
   std::vector<SemiDenseCloud> Advance(WindowStep step);
 
+  std::deque<OpenKeyframe> state() const;
+  /// Throws std::invalid_argument when a keyframe's estimates are not those of its image.
+  void Restore(const std::deque<OpenKeyframe>& state);
+
  private:
   struct Entry {
     KeyframeView view;
@@ -43,6 +48,7 @@ class SemiDenseWindow {
   };
   using Poses = std::map<KeyframeId, SimilarityTransform>;
 
+  std::vector<cv::Point> GradientPixels(const KeyframeView& view) const;
   std::vector<int> NeighborsOf(int index, int count) const;
   InverseDepth EstimatePixel(const cv::Point& pixel, const DepthRange& range,
                              const std::vector<EpipolarSearch>& searches) const;

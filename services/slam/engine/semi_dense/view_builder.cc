@@ -25,6 +25,10 @@ void ViewBuilder::Complete(KeyframeView* view) const {
     view->grey = undistorted;
     view->labels.Remap(map_x_, map_y_);
   }
+  AddGradient(view);
+}
+
+void ViewBuilder::AddGradient(KeyframeView* view) {
   cv::Mat parts[2];
   cv::spatialGradient(view->grey, parts[0], parts[1]);
   cv::merge(parts, 2, view->gradient);

@@ -16,6 +16,9 @@ class ViewBuilder {
   /// Replaces `view`'s raw image and labels by undistorted ones of the same size, and fills in the gradient.
   void Complete(KeyframeView* view) const;
 
+  /// Fills in the gradient of a view that is undistorted already.
+  static void AddGradient(KeyframeView* view);
+
  private:
   cv::Mat map_x_, map_y_;  // raw pixel of each undistorted one; empty when there is no distortion
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -97,6 +98,12 @@ class ByteReader {
     Get(there);
     value.reset();
     if (there != 0) Get(value.emplace());
+  }
+  template <typename T>
+  void Get(std::deque<T>& values) {
+    const size_t count = TakeCount();
+    values.clear();
+    for (size_t i = 0; i < count; ++i) Get(values.emplace_back());
   }
   template <typename T>
   void Get(std::vector<T>& values) {

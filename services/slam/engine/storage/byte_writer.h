@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -83,6 +84,10 @@ class ByteWriter {
   void Put(const std::vector<uint8_t>& values) {
     Put(static_cast<uint64_t>(values.size()));
     Raw(values.data(), values.size());
+  }
+  template <typename T>
+  void Put(const std::deque<T>& values) {
+    PutAll(values);
   }
   template <typename T>
   void Put(const std::set<T>& values) {

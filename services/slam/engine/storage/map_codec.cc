@@ -97,6 +97,13 @@ void MapCodec::MarkAllChanged(SlamMap* map) {
   map->removed_landmarks_.clear();
 }
 
+std::set<int64_t> MapCodec::Blocks(const SlamMap& map) {
+  std::set<int64_t> numbers{map.id_block_};
+  for (const auto& block : map.keyframes_.blocks()) numbers.insert(block.number);
+  for (const auto& block : map.landmarks_.blocks()) numbers.insert(block.number);
+  return numbers;
+}
+
 std::set<uint32_t> MapCodec::Objects(const SlamMap& map) {
   std::set<uint32_t> objects;
   map.landmarks_.ForEach([&](const Landmark& landmark) { objects.insert(landmark.object_id); });

@@ -25,6 +25,9 @@ class MapCodec {
   /// Has the next TakeChanges tell of everything.
   static void MarkAllChanged(SlamMap* map);
 
+  /// Numbers of the blocks that its ids are of, and that it goes on with.
+  static std::set<int64_t> Blocks(const SlamMap& map);
+
   /// All objects that a landmark or a feature belongs to.
   static std::set<uint32_t> Objects(const SlamMap& map);
   /// Old number -> new number; the others stay.

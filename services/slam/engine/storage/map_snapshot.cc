@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -60,6 +63,18 @@ void CheckEye(const Sections& sections, const std::vector<double>& expected) {
   }
 }
 
+// No two maps may hold, or go on with, the same ids, nor with those that later maps will have.
+void CheckBlocks(const std::map<int64_t, std::unique_ptr<SlamMap>>& maps, int64_t next_map_id) {
+  std::set<int64_t> taken;
+  for (const auto& [map_id, map] : maps) {
+    for (const int64_t block : MapCodec::Blocks(*map)) {
+      if (block >= next_map_id || !taken.insert(block).second) {
+        throw MapFileError("damaged: ids of block " + std::to_string(block) + " in map " + std::to_string(map_id));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 MapSnapshot::MapSnapshot(const Atlas& atlas, const CameraModel& camera) {
@@ -102,14 +117,17 @@ Sections ReadMaps(const std::vector<uint8_t>& bytes, const CameraModel& camera, 
   ByteReader reader(Find(sections, kMaps));
   int64_t next_map_id = 0, active = -1;
   reader(next_map_id, active);
-  const size_t maps = reader.TakeCount();
-  for (size_t i = 0; i < maps; ++i) {
+  const size_t count = reader.TakeCount();
+  std::map<int64_t, std::unique_ptr<SlamMap>> maps;
+  for (size_t i = 0; i < count; ++i) {
     std::unique_ptr<SlamMap> map = MapCodec::Read(atlas->scales(), features, &reader);
-    if (atlas->Find(map->map_id()) != nullptr) throw MapFileError("damaged: holds a map twice");
-    atlas->Add(std::move(map));
+    const int64_t map_id = map->map_id();
+    if (!maps.emplace(map_id, std::move(map)).second) throw MapFileError("damaged: holds a map twice");
   }
   if (!reader.IsAtEnd()) throw MapFileError("damaged: goes on after its last map");
+  CheckBlocks(maps, next_map_id);
   if (next_map_id < 0 || next_map_id > INT32_MAX) throw MapFileError("damaged: number of the next map");
+  for (auto& [map_id, map] : maps) atlas->Add(std::move(map));
   atlas->ReserveMapIds(next_map_id);
   atlas->Deactivate();
   if (active >= 0) atlas->Activate(active);

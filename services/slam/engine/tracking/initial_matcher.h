@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "features/brute_force_matcher.h"
@@ -17,6 +18,10 @@ class InitialMatcher {
 
   /// Matches (query: reference's keypoint, train: current's keypoint), mutually best, all turning alike.
   std::vector<FeatureMatch> Match(const Frame& reference, const Frame& current);
+
+  /// Where the reference's keypoints were last seen, one each.
+  const std::vector<Eigen::Vector2d>& last_seen_px() const { return last_seen_px_; }
+  void Restore(std::vector<Eigen::Vector2d> last_seen_px) { last_seen_px_ = std::move(last_seen_px); }
 
  private:
   std::vector<Eigen::Vector2d> last_seen_px_;  // one a keypoint of the reference

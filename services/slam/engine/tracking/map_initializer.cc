@@ -50,6 +50,18 @@ void MapInitializer::StartAgain() {
   reason_ = "no frame yet";
 }
 
+InitializerState MapInitializer::state() const {
+  return {reference_, reference_ ? matcher_->last_seen_px() : std::vector<Eigen::Vector2d>(), reason_};
+}
+
+void MapInitializer::Restore(InitializerState state) {
+  reference_ = std::move(state.reference);
+  reason_ = std::move(state.reason);
+  if (!reference_) return;
+  matcher_.emplace(*reference_);
+  matcher_->Restore(std::move(state.last_seen_px));
+}
+
 std::optional<InitialMap> MapInitializer::Try(const Frame& current, RandomEngine& random) {
   if (!reference_) {
     StartFrom(current);

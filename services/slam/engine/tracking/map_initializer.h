@@ -32,6 +32,13 @@ struct InitialMap {
   bool from_homography = false;
 };
 
+/// What the initialiser carries from one frame to the next.
+struct InitializerState {
+  std::optional<Frame> reference;
+  std::vector<Eigen::Vector2d> last_seen_px;  ///< one a keypoint of the reference
+  std::string reason;
+};
+
 /// Finds a pair of frames with enough parallax to start a map from (Mur-Artal, Montiel and Tardos 2015, section IV).
 class MapInitializer {
  public:
@@ -44,6 +51,9 @@ class MapInitializer {
   void StartAgain();
 
   const std::string& reason() const { return reason_; }
+
+  InitializerState state() const;
+  void Restore(InitializerState state);
 
  private:
   void StartFrom(const Frame& frame);
