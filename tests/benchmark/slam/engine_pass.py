@@ -64,6 +64,7 @@ class PassReport:
     landmarks: dict[int, int]
     wall_ms: Array
     cpu_ms: Array
+    read_ms: Array
     rss_mb: Array
     sizes: npt.NDArray[np.int64]
     """(frames, 2): live keyframes, landmarks after each frame"""
@@ -118,6 +119,7 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         landmarks=dict(sorted(Counter(run.landmarks.values()).items())),
         wall_ms=np.array(run.wall_ms),
         cpu_ms=np.array(run.cpu_ms),
+        read_ms=np.array(run.read_ms),
         rss_mb=np.array(run.rss_mb),
         sizes=np.array(run.sizes),
         stage_ms={stage: round(float(np.mean([row[stage] for row in stages])), 1) for stage in stages[0]},

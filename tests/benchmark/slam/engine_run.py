@@ -25,16 +25,17 @@ FRAME_NS = 100_000_000
 
 
 class FrameClock:
-    """Processor time of this process from frame to frame, without what this thread does between them (it reads)."""
+    """Processor time of this process from frame to frame, without what this thread does between them: reading."""
 
     def __init__(self) -> None:
         self._process_s = time.process_time()
         self._thread_s = time.thread_time()
         self._reading_s = 0.0
 
-    def begin(self) -> None:
-        """A frame was read."""
+    def read_ms(self) -> float:
+        """A frame was read. Time that took."""
         self._reading_s = time.thread_time() - self._thread_s
+        return self._reading_s * 1e3
 
     def end_ms(self) -> float:
         """Time since the last call."""
@@ -60,6 +61,8 @@ class EngineRun:
     wall_ms: list[float] = field(default_factory=list)
     cpu_ms: list[float] = field(default_factory=list)
     """processor time of all threads for a frame, with what the background did since the frame before"""
+    read_ms: list[float] = field(default_factory=list)
+    """the same for reading the frame's images: equal work each time, so that it tells how fast the machine is then"""
     rss_mb: list[float] = field(default_factory=list)
     """resident memory of this process after each frame"""
     sizes: list[tuple[int, int]] = field(default_factory=list)
@@ -72,7 +75,7 @@ class EngineRun:
     def step(self, frame: SequenceFrame) -> None:
         """Track the next frame."""
         index, objects = len(self.results), frame.objects
-        self._clock.begin()
+        self.read_ms.append(self._clock.read_ms())
         start = time.perf_counter()
         self.engine.begin_frame((index + 1) * FRAME_NS, frame.image, frame.right)
         result = self.engine.finish_frame(*objects, masks_fresh=True)

@@ -116,6 +116,13 @@ TEST_F(MapFile, IsRefusedForAnotherCamera) {
   EXPECT_EQ(WhyRefused(bytes_, other), "was made with another camera or pyramid: fx 500, expected 501");
 }
 
+TEST_F(MapFile, IsRefusedWhenTwoMapsGoOnWithTheSameIds) {
+  atlas_.Find(1)->set_id_block(0);
+  EXPECT_EQ(WhyRefused(BytesOf(atlas_)), "damaged: ids of block 0 in map 1");
+  atlas_.Find(1)->set_id_block(7);
+  EXPECT_EQ(WhyRefused(BytesOf(atlas_)), "damaged: ids of block 7 in map 1");
+}
+
 /// What a reader would do with a map that it was given.
 void WalkThrough(Atlas* atlas) {
   for (const auto& map : atlas->maps()) {
