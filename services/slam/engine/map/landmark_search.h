@@ -58,6 +58,8 @@ class KeypointSearch {
     return best;
   }
 
+  /// Whether the last search's window held an accepted keypoint at all, however unlike.
+  bool IsAnyNear() const { return distance_ < 257; }
   /// Hamming distance of the last search's best keypoint.
   int distance() const { return distance_; }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "map/landmark_search.h"
+#include "tracking/chance_test.h"
 
 namespace kinemap {
 namespace {
@@ -52,12 +53,14 @@ std::vector<KeyframeId> LocalMapTracker::LocalKeyframes(const SlamMap& map, cons
 }
 
 void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
-                                           std::set<LandmarkId>* in_view, Frame* frame) const {
+                                           Searched* searched, Frame* frame) const {
   std::set<LandmarkId> seen;
   for (LandmarkId& id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     id = landmark == nullptr ? kNoId : landmark->id;
-    if (landmark != nullptr && seen.insert(id).second) in_view->insert(id);
+    if (landmark == nullptr || !seen.insert(id).second) continue;
+    searched->in_view.insert(id);
+    searched->looked_for.insert(id);
   }
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
@@ -68,29 +71,49 @@ void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<Keyfr
       const auto view =
           PredictView(*landmark, map->PositionInMap(*landmark), frame->camera_from_map, center, camera_, map->scales());
       if (!view) continue;
-      in_view->insert(landmark->id);
+      searched->in_view.insert(landmark->id);
       const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor *
                             camera_.SpreadAt(view->pixel_px);
       const SearchWindow window{view->pixel_px, radius * map->scales().scale(view->octave), view->octave - 1,
                                 view->octave + 1};
       const int best = search.FindBest(*frame->features, landmark->descriptor, window, kMaxHammingDistance, kMatchRatio,
                                        [&](int j) { return frame->IsFree(j); });
+      if (search.IsAnyNear()) searched->looked_for.insert(landmark->id);
       if (best >= 0) frame->landmark_ids[best] = landmark->id;
     }
   }
 }
 
+bool LocalMapTracker::IsFoundByChance(const SlamMap& map, const Searched& searched, const Frame& frame) const {
+  SearchOutcome outcome;
+  outcome.looked_for = static_cast<int>(searched.looked_for.size());
+  int bits = 0;
+  for (int i = 0; i < frame.size(); ++i) {
+    const Landmark* landmark = map.FindLandmark(frame.landmark_ids[i]);
+    if (landmark == nullptr) continue;
+    ++outcome.found;
+    bits += HammingDistance(landmark->descriptor, frame.features->descriptors[i]);
+  }
+  outcome.mean_distance_bits = static_cast<double>(bits) / std::max(outcome.found, 1);
+  return IsByChance(outcome);
+}
+
 PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* frame) const {
   const std::vector<KeyframeId> keyframes = LocalKeyframes(*map, *frame);
   if (!keyframes.empty()) frame->reference_keyframe_id = keyframes.front();
-  std::set<LandmarkId> in_view;
-  SearchLocalLandmarks(map, keyframes, radius_factor, &in_view, frame);
+  Searched searched;
+  SearchLocalLandmarks(map, keyframes, radius_factor, &searched, frame);
   PoseEstimate estimate = solver_.Solve(*map, frame);
   if (estimate.inliers < kFewInliers) {
-    SearchLocalLandmarks(map, keyframes, kWiderRadiusFactor * radius_factor, &in_view, frame);
+    SearchLocalLandmarks(map, keyframes, kWiderRadiusFactor * radius_factor, &searched, frame);
     estimate = solver_.Solve(*map, frame);
   }
-  for (const LandmarkId id : in_view) ++map->FindLandmark(id)->visible;
+  if (IsFoundByChance(*map, searched, *frame)) {
+    frame->ForgetMatches();
+    estimate.inliers = 0;
+    return estimate;
+  }
+  for (const LandmarkId id : searched.in_view) ++map->FindLandmark(id)->visible;
   for (const LandmarkId id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     if (landmark != nullptr) ++landmark->found;

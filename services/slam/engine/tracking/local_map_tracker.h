@@ -18,13 +18,20 @@ class LocalMapTracker {
 
   /// Chooses the local map by the frame's matches, finds more matches in it and optimises the pose. Sets the frame's
   /// reference keyframe (the one that shares most landmarks with it) and counts in each landmark whether it was found.
-  /// With `radius_factor` > 1 the search is wider (after a relocalisation).
+  /// With `radius_factor` > 1 the search is wider (after a relocalisation). A pose that chance explains keeps no match
+  /// and has no inliers.
   PoseEstimate Track(SlamMap* map, double radius_factor, Frame* frame) const;
 
  private:
   std::vector<KeyframeId> LocalKeyframes(const SlamMap& map, const Frame& frame) const;
+  /// Landmarks of the local map by what became of them; each set holds the next.
+  struct Searched {
+    std::set<LandmarkId> in_view;
+    std::set<LandmarkId> looked_for;  ///< something that may be them lies where they should be
+  };
   void SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
-                            std::set<LandmarkId>* in_view, Frame* frame) const;
+                            Searched* searched, Frame* frame) const;
+  bool IsFoundByChance(const SlamMap& map, const Searched& searched, const Frame& frame) const;
 
   CameraModel camera_;
   FramePoseSolver solver_;
