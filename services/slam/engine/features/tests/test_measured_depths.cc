@@ -106,12 +106,14 @@ TEST(RigExtractor, TakesDepthsWhereStereoFoundNone) {
   const cv::Mat left = Texture({640, 480}, 2.0);
   const cv::Mat depth(480, 640, CV_32F, cv::Scalar(7));
   RigExtractor extractor(kOptions, kScales, kCamera);
-  for (const Keypoint& keypoint : extractor.Extract(left, {}, depth)->keypoints) {
+  const FrameFeaturesPtr of_depth = extractor.Extract(left, {}, depth);
+  for (const Keypoint& keypoint : of_depth->keypoints) {
     EXPECT_NEAR(keypoint.depth_m, 7, 1e-6);
     EXPECT_NEAR(keypoint.right_x_px, keypoint.pixel_px.x() - 500 * 0.4 / 7, 1e-5);
   }
   int by_stereo = 0, by_depth = 0;
-  for (const Keypoint& keypoint : extractor.Extract(left, RightOf(left, 40, 40), depth)->keypoints) {
+  const FrameFeaturesPtr of_both = extractor.Extract(left, RightOf(left, 40, 40), depth);
+  for (const Keypoint& keypoint : of_both->keypoints) {
     (std::abs(keypoint.depth_m - 5) < 0.5 ? by_stereo : by_depth) += 1;
   }
   EXPECT_GT(by_stereo, 300);
