@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/final_adjuster.h"
-#include "optimization/reprojection_cost.h"
+#include "optimization/radial_projection.h"
 #include "synthetic/scene.h"
 
 namespace kinemap {

@@ -6,6 +6,7 @@
 
 #include "optimization/bundle_adjustment.h"
 #include "optimization/pose_optimizer.h"
+#include "optimization/radial_projection.h"
 #include "optimization/reprojection_cost.h"
 #include "synthetic/scene.h"
 
@@ -65,7 +66,7 @@ TEST(PoseOptimizer, SaysNothingOfTwoPoints) {
 
 TEST(ReprojectionCost, JacobiansAreItsDerivatives) {
   const CameraModel camera = TestCamera();
-  const ReprojectionCost cost(camera, {300, 200}, 0.8);
+  const ReprojectionCost<2> cost(camera, {300, 200}, 0.8);
   std::array<double, kPoseSize> pose;
   WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
   std::array<double, 3> point{0.4, -0.6, 6};
@@ -100,7 +101,7 @@ TEST(ReprojectionCost, JacobiansAreItsDerivatives) {
 
 TEST(RadialReprojectionCost, JacobiansAreItsDerivatives) {
   const CameraModel camera = TestCamera();
-  const RadialReprojectionCost cost(camera, {300, 200}, 0.8);
+  const RadialReprojectionCost<2> cost(camera, {300, 200}, 0.8);
   std::array<double, kPoseSize> pose;
   WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
   std::array<double, 3> point{1.4, -1.6, 6};

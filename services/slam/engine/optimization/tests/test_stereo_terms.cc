@@ -5,7 +5,8 @@
 
 #include "optimization/bundle_adjustment.h"
 #include "optimization/pose_optimizer.h"
-#include "optimization/stereo_reprojection_cost.h"
+#include "optimization/radial_projection.h"
+#include "optimization/reprojection_cost.h"
 #include "synthetic/scene.h"
 
 namespace kinemap {
@@ -53,10 +54,10 @@ void ExpectDerivatives(const Cost& cost, bool has_calibration) {
 
 TEST(StereoReprojectionCost, JacobiansAreItsDerivatives) {
   const CameraModel camera = TestStereoCamera();
-  ExpectDerivatives(StereoReprojectionCost(camera, {300, 200}, 270, 0.8), false);
-  ExpectDerivatives(RadialStereoReprojectionCost(camera, {300, 200}, 270, 0.8), true);
+  ExpectDerivatives(ReprojectionCost<3>(camera, {300, 200, 270}, 0.8), false);
+  ExpectDerivatives(RadialReprojectionCost<3>(camera, {300, 200, 270}, 0.8), true);
   const CameraModel depth_camera = camera.WithDepthBaseline(0.3);
-  ExpectDerivatives(RadialStereoReprojectionCost(depth_camera, {300, 200}, 270, 0.8), true);
+  ExpectDerivatives(RadialReprojectionCost<3>(depth_camera, {300, 200, 270}, 0.8), true);
 }
 
 TEST(PoseOptimizer, KnowsHowFarItWentByTheRightImage) {
