@@ -6,14 +6,17 @@
 
 namespace kinemap {
 
-/// What odometry may have lost on its way, as a part of that way. A street of equal houses shows one picture at many
-/// places; that the camera cannot be at another one of them, only its way tells.
+/// What may be lost on a way from keyframe to keyframe, as a part of that way. A street of equal houses shows one
+/// picture at many places; that the camera cannot be at another one of them, only its way tells.
 struct DriftBoundOptions {
   double one_camera = 0.3;      ///< its scale drifts too
   double measured_depth = 0.1;  ///< stereo, depth
+  double closed = 0.05;         ///< between keyframes that a closed loop holds, whatever the camera
 };
 
-/// Whether the camera can have come to where a recognised place puts it.
+/// Whether the camera can have come to where a recognised place puts it. The way is the one on which least is lost,
+/// over keyframes that follow each other, see the same landmarks or were joined by a loop: a camera that drives through
+/// a mapped street again has not drifted by the whole way of its second round.
 ///
 /// @param candidate_from_keyframe between the two cameras of `map`, in its units.
 /// @param fixed_scale both were mapped with measured depth.

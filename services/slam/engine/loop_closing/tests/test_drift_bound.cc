@@ -18,12 +18,14 @@ class ARound : public ::testing::Test {
 
   Eigen::Vector3d Centre(KeyframeId id) const { return map_->keyframe(id).map_from_keyframe.translation; }
 
-  bool MayBeOff(double part, bool fixed_scale) const {
+  /// Whether the last keyframe may be a part of the round's way off its place beside `candidate_id`.
+  bool MayBeOff(double part, bool fixed_scale, KeyframeId candidate_id) const {
     RigidTransform recognised = map_->keyframe(ids_.back()).map_from_keyframe;
     recognised.translation.x() += part * way_;
-    const RigidTransform first_from_last = map_->keyframe(ids_.front()).map_from_keyframe.Inverse() * recognised;
-    return IsWithinDrift({}, *map_, ids_.back(), ids_.front(), SimilarityTransform(first_from_last), fixed_scale);
+    const RigidTransform candidate_from_last = map_->keyframe(candidate_id).map_from_keyframe.Inverse() * recognised;
+    return IsWithinDrift({}, *map_, ids_.back(), candidate_id, SimilarityTransform(candidate_from_last), fixed_scale);
   }
+  bool MayBeOff(double part, bool fixed_scale) const { return MayBeOff(part, fixed_scale, ids_.front()); }
 
   std::unique_ptr<SlamMap> map_;
   std::vector<KeyframeId> ids_;
@@ -40,6 +42,21 @@ TEST_F(ARound, CannotHaveLostMost) {
   EXPECT_FALSE(MayBeOff(0.11, true));
   EXPECT_FALSE(MayBeOff(0.31, false));
   EXPECT_FALSE(MayBeOff(1.0, false));
+}
+
+TEST_F(ARound, HasLostLittleOnceALoopHoldsIt) {
+  const KeyframeId third_of_the_way = ids_[CircularDrive::kStepsARound / 3];
+  EXPECT_TRUE(MayBeOff(0.15, false, third_of_the_way));
+  map_->AddLoopEdge(ids_.front(), ids_.back());
+  EXPECT_FALSE(MayBeOff(0.15, false, third_of_the_way)) << "of 0.05 times a third of the round, past the loop";
+  EXPECT_FALSE(MayBeOff(0.02, false, third_of_the_way));
+  EXPECT_TRUE(MayBeOff(0.015, false, third_of_the_way));
+}
+
+TEST_F(ARound, DriftsAnewBehindAClosedLoop) {
+  map_->AddLoopEdge(ids_.front(), ids_[CircularDrive::kStepsARound / 2]);
+  EXPECT_TRUE(MayBeOff(0.12, false));
+  EXPECT_FALSE(MayBeOff(0.2, false));
 }
 
 }  // namespace
