@@ -175,14 +175,7 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
       ReportRoad(frame, objects.track_image, &result);
     }
   }
-  if (semi_dense_) {
-    semi_dense_->Collect(frame_index_);
-    if (result.keyframe_inserted) {
-      PixelLabels labels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh,
-                         options_.mask_border_px);
-      semi_dense_->Add(*map(), frame.reference_keyframe_id, image, std::move(labels), frame_index_);
-    }
-  }
+  if (semi_dense_) AddToSemiDense(frame, image, objects, result.keyframe_inserted);
   if (map() != nullptr) {
     result.map_id = map()->map_id();
     result.metric_scale = map()->metric_scale();
@@ -336,6 +329,25 @@ void Engine::CountClose(const Frame& frame, TrackingQuality* quality) const {
     if (!tracked || !IsClose(camera_, frame.features->keypoints[i])) continue;
     ++(frame.landmark_ids[i] == kNoId ? quality->close_new : quality->close_tracked);
   }
+}
+
+void Engine::AddToSemiDense(const Frame& frame, const cv::Mat& image, const FrameObjects& objects, bool is_keyframe) {
+  semi_dense_->Collect(frame_index_);
+  const bool is_first_view = initializer_.IsFirstView(frame.timestamp_ns);
+  if (!is_keyframe && !is_first_view) return;
+  PixelLabels labels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh, options_.mask_border_px);
+  if (is_first_view) {
+    first_view_ = FirstView{frame.timestamp_ns, image, std::move(labels)};
+    return;
+  }
+  if (first_view_) {
+    const Keyframe& first = map()->keyframe(map()->first_keyframe_id());
+    if (first.timestamp_ns == first_view_->timestamp_ns) {
+      semi_dense_->Add(*map(), first.id, first_view_->image, std::move(first_view_->labels), frame_index_);
+    }
+    first_view_.reset();
+  }
+  semi_dense_->Add(*map(), frame.reference_keyframe_id, image, std::move(labels), frame_index_);
 }
 
 void Engine::ReportRoad(const Frame& frame, const cv::Mat& track_image, TrackingResult* result) {

@@ -118,6 +118,7 @@ class Engine {
   void LookForLoops(KeyframeId mapped, TrackingResult* result);
   bool NeedsKeyframe(const Frame& frame, int tracked) const;
   void CountClose(const Frame& frame, TrackingQuality* quality) const;
+  void AddToSemiDense(const Frame& frame, const cv::Mat& image, const FrameObjects& objects, bool is_keyframe);
   void ReportRoad(const Frame& frame, const cv::Mat& track_image, TrackingResult* result);
   void ReportPose(const Frame& frame, const Matrix6d& information, TrackingResult* result) const;
 
@@ -140,7 +141,13 @@ class Engine {
   ObjectStates object_states_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;
+  struct FirstView {
+    int64_t timestamp_ns;
+    cv::Mat image;
+    PixelLabels labels;
+  };
   std::optional<SemiDenseMapper> semi_dense_;
+  std::optional<FirstView> first_view_;  // with a semi-dense map, before there is a map
   std::optional<GroundScale> ground_scale_;  // with one camera of known height
 
   struct BegunFrame {

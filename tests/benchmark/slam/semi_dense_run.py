@@ -14,6 +14,17 @@ from tests.benchmark.slam.engine_run import FRAME_NS, EngineRun, Update
 
 DepthOf = Callable[[int], npt.NDArray[np.float32]]
 """Frame index -> true depth (height, width) in metres along the optical axis, 0 where unknown."""
+
+
+@dataclass(frozen=True)
+class Judge:
+    """What depths are compared with, of every so many keyframes."""
+
+    name: str
+    depth_of: DepthOf
+    every: int = 1
+
+
 _COLUMNS = ("position", "depth_sigma", "grey", "state", "category", "object_id")
 
 
@@ -74,17 +85,16 @@ def stereo_depth(left: Path, right: Path, focal_baseline_px_m: float) -> DepthOf
 
 
 def relative_errors(
-    clouds: SemiDenseClouds, intrinsics: npt.NDArray[np.float64], scale: float, depth_of: DepthOf
+    clouds: SemiDenseClouds, intrinsics: npt.NDArray[np.float64], scale: float, judge: Judge
 ) -> npt.NDArray[np.float64]:
     """(N,) signed errors of the points' depths in their own keyframes, as parts of the true depth where it is known."""
     errors = [np.empty(0)]
-    for number, cloud in clouds.of_keyframe.items():
-        position = cloud["position"].astype(np.float64)
-        if len(position) == 0:
-            continue
+    shown = sorted(number for number, cloud in clouds.of_keyframe.items() if len(cloud["grey"]) > 0)
+    for number in shown[judge.every // 2 :: judge.every]:
+        position = clouds.of_keyframe[number]["position"].astype(np.float64)
         projected = position @ intrinsics.T
         column, row = np.rint(projected[:, :2] / projected[:, 2:]).astype(int).T
-        true_m = depth_of(clouds.frame_of_keyframe[number])[row, column].astype(np.float64)
+        true_m = judge.depth_of(clouds.frame_of_keyframe[number])[row, column].astype(np.float64)
         known = true_m > 0
         depth_m = position[known, 2] * clouds.pose_of_keyframe[number][7] * scale
         errors.append((depth_m - true_m[known]) / true_m[known])

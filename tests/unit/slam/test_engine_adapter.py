@@ -301,6 +301,18 @@ def test_semi_dense_points_lie_on_the_walls_and_keep_off_what_moves() -> None:
     assert np.median(np.abs(np.concatenate(errors))) < 0.03
 
 
+def test_the_first_view_of_a_map_made_from_two_has_semi_dense_points() -> None:
+    room = TexturedRoom(seed=3)
+    _, updates = drive(SlamEngine(calibration(room), EngineSettings(semi_dense=True)), room, 24)
+    first = min(int(number) for update in updates for number in update.keyframe_id)
+    points = {
+        int(number): int(count)
+        for update in updates
+        for number, count in zip(update.dense_keyframe_id, update.dense_keyframe_points, strict=True)
+    }
+    assert points[first] > 300
+
+
 def test_without_the_option_there_are_no_semi_dense_points() -> None:
     room = TexturedRoom(seed=3)
     _, updates = drive(SlamEngine(calibration(room)), room, 8)

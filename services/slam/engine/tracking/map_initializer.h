@@ -50,6 +50,9 @@ class MapInitializer {
   /// The next frame becomes the first view.
   void StartAgain();
 
+  /// Whether the frame of this time is the first view, and a map may begin with it.
+  bool IsFirstView(int64_t timestamp_ns) const { return reference_ && reference_->timestamp_ns == timestamp_ns; }
+
   const std::string& reason() const { return reason_; }
 
   InitializerState state() const;
