@@ -243,8 +243,11 @@ def test_metrics_count_the_map_and_the_requests(client: TestClient) -> None:
     assert 'kinemap_http_requests_total{path="other",status="404"} 1.0' in text
 
 
-def test_health_names_the_session(client: TestClient) -> None:
-    assert client.get("/healthz").json() == {"status": "ok", "detail": "", "session": "drive", "sequence": 20}
+def test_health_names_the_session_and_the_size_of_its_map(client: TestClient) -> None:
+    answer = client.get("/healthz").json()
+    assert (answer["status"], answer["session"], answer["sequence"]) == ("ok", "drive", 20)
+    assert answer["landmarks"] > 0
+    assert answer["dense_points"] == 0
     assert client.get("/readyz").status_code == 200
 
 

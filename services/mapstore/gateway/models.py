@@ -94,6 +94,8 @@ class HealthAnswer(BaseModel):
     detail: str
     session: str
     sequence: int
+    landmarks: int = Field(description="in all maps of the session, of any kind")
+    dense_points: int = Field(description="of the semi-dense map; 0 while slam.semi_dense is off")
 
 
 def moment(view: MapView) -> dict[str, Any]:
@@ -105,6 +107,18 @@ def moment(view: MapView) -> dict[str, Any]:
         "scale": scale_of(view.metric_scale),
         "tracking": view.state.name.lower(),
     }
+
+
+def health_answer(view: MapView, waiting_for: str = "") -> HealthAnswer:
+    """The view's size as an answer; `waiting_for`: what is missing before there is a map to ask about."""
+    return HealthAnswer(
+        status="waiting" if waiting_for else "ok",
+        detail=waiting_for,
+        session=view.session,
+        sequence=view.sequence,
+        landmarks=int(view.counts_by_state().sum()),
+        dense_points=view.dense_points,
+    )
 
 
 def density_answer(view: MapView, density: Density, high_from_points: int) -> DensityAnswer:

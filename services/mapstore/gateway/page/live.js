@@ -14,6 +14,7 @@ const byId = (id) => document.getElementById(id);
 let points = new Float32Array(0); // x y state
 let way = new Float32Array(0); // x y
 let pose = null;
+let health = null;
 let density = null;
 let objects = []; // those of the newest frame have a size
 let asked = null; // a place that was clicked, null: the robot
@@ -169,7 +170,8 @@ function tell() {
   rows(byId("pose"), pose.position
     ? [[`x, y, z in ${unit()}`, pose.position.map((n) => number(n, 2)).join(", ")], ["tracking", pose.tracking]]
     : [["tracking", pose.tracking], ["", pose.reason]]);
-  byId("counts").textContent = `${points.length / 3} points drawn, ${way.length / 2} poses`;
+  const dense = health.dense_points > 0 ? `, ${health.dense_points} semi-dense points` : "";
+  byId("counts").textContent = `${health.landmarks} landmarks${dense}; drawn: ${points.length / 3}, ${way.length / 2} poses`;
 }
 
 function densityUrl() {
@@ -186,7 +188,7 @@ async function ask(url) {
 
 async function refresh() {
   try {
-    [density, pose] = await Promise.all([ask(densityUrl()), ask("/pose")].map(async (answer) => (await answer).json()));
+    [density, pose, health] = await Promise.all([ask(densityUrl()), ask("/pose"), ask("/healthz")].map(async (answer) => (await answer).json()));
     objects = (await (await ask("/objects")).json()).objects;
     const seen = await (await ask("/map/top_view")).arrayBuffer();
     const [pointCount, poseCount] = new Uint32Array(seen, 0, 2);

@@ -6,7 +6,7 @@ from prometheus_client import CollectorRegistry
 from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
 
 from services.mapstore.gateway.live_map import LiveMap
-from services.mapstore.gateway.models import HealthAnswer
+from services.mapstore.gateway.models import HealthAnswer, health_answer
 from services.mapstore.map_view import NOT_YET
 
 
@@ -17,9 +17,7 @@ def router(live: LiveMap, registry: CollectorRegistry) -> APIRouter:
     @routes.get("/healthz", summary="Is the process alive", response_model=HealthAnswer)
     async def healthz() -> Response:
         """200 as long as the gateway answers."""
-        view = live.view
-        answer = HealthAnswer(status="ok", detail="", session=view.session, sequence=view.sequence)
-        return Response(answer.model_dump_json(), media_type="application/json")
+        return Response(health_answer(live.view).model_dump_json(), media_type="application/json")
 
     @routes.get(
         "/readyz",
@@ -31,12 +29,7 @@ def router(live: LiveMap, registry: CollectorRegistry) -> APIRouter:
         """200 from the first frame on, 503 before."""
         view = live.view
         ready = view.sequence != NOT_YET
-        answer = HealthAnswer(
-            status="ok" if ready else "waiting",
-            detail="" if ready else "no frame yet",
-            session=view.session,
-            sequence=view.sequence,
-        )
+        answer = health_answer(view, "" if ready else "no frame yet")
         return Response(answer.model_dump_json(), 200 if ready else 503, media_type="application/json")
 
     @routes.get("/metrics", summary="For Prometheus", response_class=Response)
