@@ -224,6 +224,7 @@ class Engine:
         """Whether the active map's units are metres."""
     @property
     def remaining_radial(self) -> float:
-        """Radial distortion k (pixel = project(point (1 + k r^2))) that flush() believed calibration left; 0: none."""
+        """Radial distortion k (pixel = project(point (1 + k r^2))) that calibration left, as young maps or flush() show
+        it, or as it was when the maps loaded were made; 0: none, or not found yet."""
     def take_map_update(self) -> dict[str, npt.NDArray[Any]]:
         """What changed since the last call, keyed like schemas.records.slam.MapUpdate's arrays."""

@@ -168,7 +168,7 @@ class SlamEngine:
 
     @property
     def remaining_radial(self) -> float:
-        """Radial distortion that `flush` found on top of the calibration; 0 before, and where calibration is exact."""
+        """Radial distortion on top of the calibration, found in young maps or by `flush`; 0: not yet, or none."""
         return self._engine.remaining_radial
 
     def take_map_update(self, timestamp_ns: int) -> MapUpdate:

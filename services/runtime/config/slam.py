@@ -23,7 +23,7 @@ class SlamConfig(BaseModel):
     seed: int = Field(1, ge=0, description="seed of every random sample")
     merge_delay_frames: int = Field(2, ge=1, le=20, description="frames between a keyframe and its bundle adjustment")
     radial_sigma: float = Field(
-        0.01, ge=0, description="radial distortion the calibration may have left, found at the end; 0: it is exact"
+        0.01, ge=0, description="radial distortion the calibration may have left, found in young maps; 0: it is exact"
     )
     loop_closing: bool = Field(
         True, description="recognise places seen before: take back the drift since, and join maps"

@@ -47,6 +47,13 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   return mapper;
 }
 
+LensFinderOptions LensOptions(const EngineOptions& options) {
+  LensFinderOptions lens;
+  lens.adjustment = MapperOptions(options).final_adjustment;
+  lens.wait = options.wait_for_loops;
+  return lens;
+}
+
 LoopCloserOptions ClosingOptions(const EngineOptions& options) {
   LoopCloserOptions closer;
   closer.seed = options.seed;
@@ -85,6 +92,7 @@ Engine::Engine(const CameraModel& camera, const EngineOptions& options)
       lost_policy_({.patience_frames = options.new_map_after_lost}),
       atlas_(options.map_id, scales_),
       mapper_(MapperOptions(options), camera_),
+      lens_finder_(LensOptions(options), camera_),
       contact_placer_(camera_),
       places_(options.vocabulary_path.empty() ? nullptr : Vocabulary::Load(options.vocabulary_path)),
       loop_closer_(ClosingOptions(options), camera_) {
@@ -160,11 +168,17 @@ TrackingResult Engine::FinishFrame(const FrameObjects& objects) {
     FinishMapping();
     mapper_.MergeIfDue(map(), frame_index_);
     MakeMetricIfFound();
-    if (ground_scale_ && mapper_.IsFree() && loop_closer_.IsFree()) ground_scale_->Correct(map());
+    if (lens_finder_.IsDue(frame_index_)) {
+      TakeLens();
+      frame.features = Undistorted(*frame.features, camera_);
+    }
+    const bool is_free = mapper_.IsFree() && loop_closer_.IsFree() && lens_finder_.IsFree();
+    if (ground_scale_ && is_free) ground_scale_->Correct(map());
     result.stage_ms.merge_ms = stopwatch.ElapsedMs();
     MergeLoops(&result);
     places_.Follow(map());
     if (mapped) LookForLoops(*mapped, &result);
+    if (mapped) LookThroughLens();
     if (options_.stage == Stage::kMoving && objects.masks_fresh && !options_.localize_only) {
       object_states_.Update(objects.rows, frame.timestamp_ns, map());
     }
@@ -235,6 +249,7 @@ void Engine::StartFromTwoFrames(Frame* frame, TrackingResult* result) {
 
 void Engine::MakeMetricIfFound() {
   if (map()->metric_scale() || !late_scale_.IsFound()) return;
+  lens_finder_.Cancel();
   mapper_.Settle(map());
   loop_closer_.Settle(&atlas_);
   tracker_.ChangeUnits(late_scale_.Apply(map()));
@@ -295,6 +310,7 @@ void Engine::MergeLoops(TrackingResult* result) {
   const Stopwatch stopwatch;
   mapper_.Settle(map());
   const LoopEvents events = loop_closer_.Merge(&atlas_, frame_index_);
+  lens_finder_.Cancel();
   result->loop_closed = events.loops_closed > 0;
   result->maps_merged = events.maps_merged > 0;
   result->map_id = atlas_.active_map_id();
@@ -331,25 +347,6 @@ void Engine::CountClose(const Frame& frame, TrackingQuality* quality) const {
   }
 }
 
-void Engine::AddToSemiDense(const Frame& frame, const cv::Mat& image, const FrameObjects& objects, bool is_keyframe) {
-  semi_dense_->Collect(frame_index_);
-  const bool is_first_view = initializer_.IsFirstView(frame.timestamp_ns);
-  if (!is_keyframe && !is_first_view) return;
-  PixelLabels labels(options_.stage, objects.track_image, objects.rows, objects.masks_fresh, options_.mask_border_px);
-  if (is_first_view) {
-    first_view_ = FirstView{frame.timestamp_ns, image, std::move(labels)};
-    return;
-  }
-  if (first_view_) {
-    const Keyframe& first = map()->keyframe(map()->first_keyframe_id());
-    if (first.timestamp_ns == first_view_->timestamp_ns) {
-      semi_dense_->Add(*map(), first.id, first_view_->image, std::move(first_view_->labels), frame_index_);
-    }
-    first_view_.reset();
-  }
-  semi_dense_->Add(*map(), frame.reference_keyframe_id, image, std::move(labels), frame_index_);
-}
-
 void Engine::ReportRoad(const Frame& frame, const cv::Mat& track_image, TrackingResult* result) {
   const std::optional<GroundPlane>& plane = ground_scale_->plane();
   if (!plane) return;
@@ -375,11 +372,11 @@ void Engine::ReportPose(const Frame& frame, const Matrix6d& information, Trackin
 void Engine::Flush() {
   if (options_.localize_only) return;
   SettleMaps();
+  if (map() != nullptr) BelieveLens(mapper_.Finish(map()));
   for (const auto& other : atlas_.maps()) {
     if (other.get() != map()) mapper_.Finish(other.get());
   }
   if (map() == nullptr) return;
-  mapper_.Finish(map());
   if (ground_scale_) ground_scale_->Finish(map());
   if (semi_dense_) semi_dense_->Finish(*map());
 }

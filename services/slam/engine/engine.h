@@ -16,6 +16,7 @@
 #include "map/place_index.h"
 #include "map_update.h"
 #include "mapping/late_metric_scale.h"
+#include "mapping/lens_finder.h"
 #include "mapping/local_mapper.h"
 #include "mapping/object_states.h"
 #include "semi_dense/semi_dense_mapper.h"
@@ -59,8 +60,9 @@ class Engine {
   /// together with the radial distortion that the calibration left.
   void Flush();
 
-  /// Radial distortion k that Flush found on top of the calibration; 0 before. A perfect calibration gives 0.
-  double remaining_radial() const { return mapper_.remaining_radial(); }
+  /// Radial distortion k that was found on top of the calibration, in young maps and by Flush; 0 before. A perfect
+  /// calibration gives 0.
+  double remaining_radial() const { return camera_.remaining_radial(); }
 
   int64_t active_map_id() const { return atlas_.active_map_id(); }
   /// The number of the map after those there are.
@@ -108,6 +110,10 @@ class Engine {
   void StartFromOneFrame(Frame* frame);
   void StartFromTwoFrames(Frame* frame, TrackingResult* result);
   void MakeMetricIfFound();
+  void TakeLens();
+  void LookThroughLens();
+  void BelieveLens(double radial);
+  void SetLens(double radial);
   void FillWaitingFrames(const Frame& first, const Frame& current);
   void Track(Frame* frame, TrackingResult* result);
   bool RecoverInOtherMaps(Frame* frame, TrackingResult* result);
@@ -136,18 +142,14 @@ class Engine {
   LostPolicy lost_policy_;
   Atlas atlas_;  // before the mapper, whose thread works on its maps
   LocalMapper mapper_;
+  LensFinder lens_finder_;
   LateMetricScale late_scale_;
   ContactPlacer contact_placer_;
   ObjectStates object_states_;
   PlaceIndex places_;  // of the keyframes of all maps
   LoopCloser loop_closer_;
-  struct FirstView {
-    int64_t timestamp_ns;
-    cv::Mat image;
-    PixelLabels labels;
-  };
   std::optional<SemiDenseMapper> semi_dense_;
-  std::optional<FirstView> first_view_;  // with a semi-dense map, before there is a map
+  std::optional<KeyframeView> first_view_;   // raw, for the semi-dense map, before there is a map
   std::optional<GroundScale> ground_scale_;  // with one camera of known height
 
   struct BegunFrame {

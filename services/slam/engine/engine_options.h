@@ -21,7 +21,7 @@ struct EngineOptions {
   uint64_t seed = 0;                ///< of all random numbers, with the frame's timestamp
   int merge_delay_frames = 2;       ///< bundle adjustment of keyframe k is merged at frame k + this, at least 1
   int local_bundle_keyframes = 15;  ///< keyframes that move in a local bundle adjustment
-  double radial_sigma = 0.01;       ///< distortion calibration may have left, found at the end; 0: calibration is exact
+  double radial_sigma = 0.01;       ///< distortion calibration may have left, found in young maps; 0: calibration is exact
   int threads = 2;                  ///< of feature extraction; results are the same with any number
   bool loop_closing = true;         ///< recognises places seen before; needs a vocabulary
   double right_shift_sigma_px = 0.05;  ///< the same of the right image's columns, found with the distortion

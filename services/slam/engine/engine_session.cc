@@ -70,21 +70,28 @@ void Serialize(Archive& archive, SemiDenseCloud& cloud) {
 }
 
 template <typename Archive>
-void Serialize(Archive& archive, OpenKeyframe& open) {
-  auto& [view, estimated, estimates, finished] = open;
+void Serialize(Archive& archive, KeyframeView& view) {
   auto& [id, timestamp_ns, grey, gradient, labels, range] = view;
   cv::Mat index = labels.index();
   std::vector<FeatureLabel> of_index = labels.labels();
-  archive(id, timestamp_ns, grey, index, of_index, range.farthest, range.nearest, estimated, estimates, finished);
+  archive(id, timestamp_ns, grey, index, of_index, range.farthest, range.nearest);
   if constexpr (Archive::kReads) {
     const bool fits = index.empty() || (index.size() == grey.size() && index.type() == CV_8U);
     Require(fits && grey.type() == CV_8U && !of_index.empty(), "a keyframe's image");
     for (const uint8_t label : cv::Mat_<uint8_t>(index)) Require(label < of_index.size(), "a pixel's label");
     Require(std::isfinite(range.farthest) && std::isfinite(range.nearest), "a keyframe's range");
+    labels = PixelLabels(index, of_index);
+  }
+}
+
+template <typename Archive>
+void Serialize(Archive& archive, OpenKeyframe& open) {
+  auto& [view, estimated, estimates, finished] = open;
+  archive(view, estimated, estimates, finished);
+  if constexpr (Archive::kReads) {
     for (const InverseDepth& estimate : estimates) {
       Require(std::isfinite(estimate.value) && std::isfinite(estimate.sigma), "an inverse depth");
     }
-    labels = PixelLabels(index, of_index);
   }
 }
 
@@ -175,8 +182,9 @@ void Engine::SessionFields(Archive& archive) {
   LandmarkCuller::OnTrial on_trial = mapper_.on_trial();
   std::map<uint32_t, MotionState> objects = object_states_.states();
   int lost_in_map = lost_policy_.lost_frames(), features = feature_budget_.next();
-  archive(frame_index_, last_keyframe_index_, last_timestamp_ns_, must_be_recognised_, lost_in_map, features, on_trial,
-          objects, last_from_reference, last_scale, velocity, lost_frames, frames_since_relocalization,
+  int next_lens = lens_finder_.next_keyframes();
+  archive(frame_index_, last_keyframe_index_, last_timestamp_ns_, must_be_recognised_, lost_in_map, features, next_lens,
+          on_trial, objects, last_from_reference, last_scale, velocity, lost_frames, frames_since_relocalization,
           loops.candidates, loops.keyframes_since_loop, late_scale.map_id, late_scale.metres_per_unit, late_frames_);
   parts(last);
   parts(initializer);
@@ -193,7 +201,7 @@ void Engine::SessionFields(Archive& archive) {
   }
   if (semi_dense_) {
     SemiDenseState state = semi_dense_->state();
-    archive(state.keyframes, state.window, state.finished);
+    archive(state.keyframes, state.window, state.finished, first_view_);
     if constexpr (Archive::kReads) RestoreSemiDense(std::move(state));
   }
   if constexpr (Archive::kReads) {
@@ -214,14 +222,15 @@ void Engine::SessionFields(Archive& archive) {
     mapper_.Restore(std::move(on_trial));
     object_states_.Restore(objects);
     lost_policy_.Restore(lost_in_map);
+    lens_finder_.Restore(next_lens);
     feature_budget_.Restore(features);
   }
 }
 
 void Engine::RestoreSemiDense(SemiDenseState state) {
-  for (const OpenKeyframe& open : state.window) {
-    Require(open.view.grey.size() == cv::Size(camera_.width_px(), camera_.height_px()), "a keyframe's image");
-  }
+  const cv::Size size(camera_.width_px(), camera_.height_px());
+  for (const OpenKeyframe& open : state.window) Require(open.view.grey.size() == size, "a keyframe's image");
+  Require(!first_view_ || first_view_->grey.size() == size, "the first view's image");
   try {
     semi_dense_->Restore(std::move(state));
   } catch (const std::invalid_argument& error) {
@@ -241,6 +250,7 @@ MapSnapshot Engine::Checkpoint() {
 void Engine::RestoreState(const std::vector<uint8_t>& bytes) {
   RequireUnused();
   const Sections sections = ReadMaps(bytes, camera_, &atlas_);
+  SetLens(RemainingRadial(sections));
   for (const auto& map : atlas_.maps()) places_.Follow(map.get());
   const auto session = sections.find(kSession);
   if (session == sections.end()) throw MapFileError("damaged: without its section 'session'");

@@ -44,6 +44,7 @@ void Engine::SettleMaps() {
   FinishMapping();
   if (map() == nullptr) return;
   mapper_.Settle(map());
+  TakeLens();
   places_.Follow(map());
   TrackingResult unreported;
   if (mapped) LookForLoops(*mapped, &unreported);
@@ -68,14 +69,16 @@ void Engine::RequireUnused() const {
 
 void Engine::LoadMaps(const std::string& path) {
   RequireUnused();
-  NamingFile(path, [&](const std::vector<uint8_t>& bytes) { ReadMaps(bytes, camera_, &atlas_); });
+  NamingFile(path,
+             [&](const std::vector<uint8_t>& bytes) { SetLens(RemainingRadial(ReadMaps(bytes, camera_, &atlas_))); });
   RenameObjects(atlas_);
   BeginInLoadedMaps();
 }
 
 void Engine::ResumeMaps(const std::string& path, int64_t first_free_map_id) {
   RequireUnused();
-  NamingFile(path, [&](const std::vector<uint8_t>& bytes) { ReadMaps(bytes, camera_, &atlas_); });
+  NamingFile(path,
+             [&](const std::vector<uint8_t>& bytes) { SetLens(RemainingRadial(ReadMaps(bytes, camera_, &atlas_))); });
   atlas_.ReserveMapIds(first_free_map_id);
   for (const auto& map : atlas_.maps()) map->set_id_block(atlas_.TakeMapId());
   BeginInLoadedMaps();

@@ -33,7 +33,7 @@ from tests.benchmark.slam.semi_dense_run import (
 from tests.benchmark.slam.sequence_part import SequencePart
 
 COMMAND = "python -m tests.benchmark.slam.semi_dense NAME=SEQUENCE... --write"
-MOTION_STEREO_EVERY = 8
+MOTION_STEREO_EVERY = 12
 """of so many keyframes one is compared with motion stereo, which takes eleven seconds an image"""
 HEAD = [
     "sequence",

@@ -7,6 +7,7 @@
 #include "features/descriptor.h"
 #include "features/keypoint.h"
 #include "features/keypoint_grid.h"
+#include "geometry/camera_model.h"
 
 namespace kinemap {
 
@@ -20,5 +21,8 @@ struct FrameFeatures {
 };
 
 using FrameFeaturesPtr = std::shared_ptr<const FrameFeatures>;
+
+/// The same features where another model of the lens undistorts them to; of one image without depths.
+FrameFeaturesPtr Undistorted(const FrameFeatures& features, const CameraModel& camera);
 
 }  // namespace kinemap

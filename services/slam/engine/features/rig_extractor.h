@@ -19,6 +19,9 @@ class RigExtractor {
   /// Features wanted of each image from now on.
   void SetWanted(int features);
 
+  /// Where images of one camera without depths are undistorted by from now on.
+  void SetRemainingRadial(double radial) { camera_ = camera_.WithRemainingRadial(radial); }
+
   /// 8-bit grey images of the camera's size; `right` and `depth_m` (CV_32F, metres, 0 or not a number where unknown)
   /// may be empty. Depth is read where stereo found none.
   FrameFeaturesPtr Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth_m);

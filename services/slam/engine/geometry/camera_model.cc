@@ -10,6 +10,7 @@ namespace kinemap {
 namespace {
 
 constexpr int kUndistortIterations = 20;
+constexpr int kRemainingIterations = 6;  // each leaves a thirtieth of the error
 constexpr int kBorderParts = 32;
 constexpr double kLastFisheyeAngle = 80 * M_PI / 180;
 constexpr double kOnAxis = 1e-8;
@@ -97,6 +98,13 @@ CameraModel CameraModel::WithDepthBaseline(double baseline_m) const {
   return camera;
 }
 
+CameraModel CameraModel::WithRemainingRadial(double radial) const {
+  if (!(std::abs(radial) < kMostRemainingRadial)) Fail("a remaining radial distortion below 0.1", radial);
+  CameraModel camera = *this;
+  camera.remaining_radial_ = radial;
+  return camera;
+}
+
 std::vector<double> CameraModel::Parameters() const {
   return {static_cast<double>(width_px_),
           static_cast<double>(height_px_),
@@ -141,7 +149,8 @@ Eigen::Vector2d CameraModel::DistortNormalized(const Eigen::Vector2d& p) const {
 }
 
 Eigen::Vector2d CameraModel::Distort(const Eigen::Vector2d& pixel_px) const {
-  const Eigen::Vector2d distorted = DistortNormalized(Ray(pixel_px).head<2>());
+  const Eigen::Vector2d point = Ray(pixel_px).head<2>();
+  const Eigen::Vector2d distorted = DistortNormalized(point * (1 + remaining_radial_ * point.squaredNorm()));
   return {fx_px_ * distorted.x() + cx_px_, fy_px_ * distorted.y() + cy_px_};
 }
 
@@ -175,9 +184,14 @@ bool CameraModel::CanUndistort(const Eigen::Vector2d& raw_px) const {
 }
 
 Eigen::Vector2d CameraModel::Undistort(const Eigen::Vector2d& raw_px) const {
-  if (!is_distorted_) return raw_px;
-  const Eigen::Vector2d estimate = UndistortNormalized(Ray(raw_px).head<2>());
-  return {fx_px_ * estimate.x() + cx_px_, fy_px_ * estimate.y() + cy_px_};
+  if (!is_distorted()) return raw_px;
+  Eigen::Vector2d point = Ray(raw_px).head<2>();
+  if (is_distorted_) point = UndistortNormalized(point);
+  if (remaining_radial_ != 0) {
+    const Eigen::Vector2d bent = point;
+    for (int i = 0; i < kRemainingIterations; ++i) point = bent / (1 + remaining_radial_ * point.squaredNorm());
+  }
+  return {fx_px_ * point.x() + cx_px_, fy_px_ * point.y() + cy_px_};
 }
 
 double CameraModel::SpreadAt(const Eigen::Vector2d& pixel_px) const {

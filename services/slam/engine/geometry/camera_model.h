@@ -37,7 +37,14 @@ class CameraModel {
   CameraModel WithBaseline(double baseline_m) const;
   /// The same with a depth camera instead of a right one, which is as good as a pair with this baseline.
   CameraModel WithDepthBaseline(double baseline_m) const;
-  bool is_distorted() const { return is_distorted_; }
+  bool is_distorted() const { return is_distorted_ || remaining_radial_ != 0; }
+
+  /// The same camera behind a lens that bends by `radial` more than the calibration says: the distortion of a point at
+  /// depth 1, p (1 + radial |p|^2), before all others. The calibrated image's box and Parameters stay what they are.
+  /// Throws std::invalid_argument when it is not below kMostRemainingRadial.
+  CameraModel WithRemainingRadial(double radial) const;
+  static constexpr double kMostRemainingRadial = 0.1;
+  double remaining_radial() const { return remaining_radial_; }
 
   /// All that makes up the model: two cameras with the same numbers see alike.
   std::vector<double> Parameters() const;
@@ -111,7 +118,8 @@ class CameraModel {
   bool right_is_virtual_ = false;
   Lens lens_;
   double k1_ = 0, k2_ = 0, p1_ = 0, p2_ = 0, k3_ = 0, k4_ = 0;
-  bool is_distorted_ = false;
+  bool is_distorted_ = false;  // by calibration
+  double remaining_radial_ = 0;
   Eigen::Vector2d low_corner_px_, high_corner_px_;
 };
 

@@ -28,6 +28,8 @@ class GroundScale {
   GroundScale(const CameraModel& camera, double camera_height_m, const Eigen::Vector3d& expected_normal);
 
   const RoadViewer& viewer() const { return odometer_.viewer(); }
+  /// Undistorts images by another model of the lens from now on.
+  void ChangeLens(const CameraModel& camera) { odometer_.ChangeLens(camera); }
 
   /// A tracked frame and its view of the road.
   void Observe(const SlamMap& map, const Frame& frame, RoadView view);

@@ -47,6 +47,7 @@ class RoadOdometer {
   RoadOdometer(const CameraModel& camera, const Eigen::Vector3d& expected_normal);
 
   const RoadViewer& viewer() const { return viewer_; }
+  void ChangeLens(const CameraModel& camera) { viewer_ = RoadViewer(camera); }
 
   /// `frame` has a pose in the map. `expected_height` of the camera in map units; 0: not known yet, then all plausible
   /// heights are tried.

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "geometry/camera_model.h"
-#include "loop_closing/background_slot.h"
 #include "loop_closing/essential_graph.h"
 #include "loop_closing/loop_detector.h"
 #include "loop_closing/loop_verifier.h"
 #include "loop_closing/place_fuser.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
+#include "optimization/background_slot.h"
 #include "optimization/map_bundle.h"
 
 namespace kinemap {

@@ -77,6 +77,13 @@ RigidTransform SlamMap::CameraFromMap(const RigidTransform& camera_from_referenc
   return scaled * map_from_anchor.WithoutScale().Inverse();
 }
 
+void SlamMap::UndistortFeatures(const CameraModel& camera) {
+  for (const KeyframeId id : LiveKeyframes()) {
+    Keyframe& keyframe = mutable_keyframe(id);
+    keyframe.features = Undistorted(*keyframe.features, camera);
+  }
+}
+
 void SlamMap::AddLoopEdge(KeyframeId a, KeyframeId b) {
   mutable_keyframe(a).loop_edges.insert(b);
   mutable_keyframe(b).loop_edges.insert(a);

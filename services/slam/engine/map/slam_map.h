@@ -70,6 +70,8 @@ class SlamMap {
   /// Pose of a camera by a keyframe, in the units of what is anchored there: it follows whatever becomes of the map.
   RigidTransform CameraFromReference(const RigidTransform& camera_from_map, KeyframeId reference_id) const;
   RigidTransform CameraFromMap(const RigidTransform& camera_from_reference, KeyframeId reference_id) const;
+  /// Moves the live keyframes' features to where another model of the lens undistorts them to.
+  void UndistortFeatures(const CameraModel& camera);
   /// Ties two keyframes that a recognised place shows to be neighbours.
   void AddLoopEdge(KeyframeId a, KeyframeId b);
   /// Drops features and observations; the pose stays, relative to the keyframe that shares most with it, where the

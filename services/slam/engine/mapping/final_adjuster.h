@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+
 #include "geometry/camera_model.h"
 #include "map/slam_map.h"
 #include "optimization/map_bundle.h"
@@ -24,8 +26,16 @@ class FinalAdjuster {
  public:
   FinalAdjuster(const FinalAdjusterOptions& options, const CameraModel& camera) : options_(options), camera_(camera) {}
 
-  /// Returns the radial distortion that was believed, 0 for none (see BundleProblem::radial).
+  /// Returns the radial distortion that was believed (see BundleProblem::radial), by which the features may be moved; 0
+  /// for none, and where depths are measured, by which they cannot.
   double Adjust(SlamMap* map) const;
+
+  /// The adjusted problem of a whole map, with the distortion that is believed. Once `cancelled` is true it ends early
+  /// with one that is good for nothing.
+  BundleProblem Solve(BundleProblem problem, const std::atomic<bool>* cancelled = nullptr) const;
+
+  /// Whether a right image or a depth camera tells some of the depths.
+  static bool MeasuresDepth(const BundleProblem& problem);
 
  private:
   FinalAdjusterOptions options_;

@@ -69,10 +69,10 @@ void LocalMapper::Leave(SlamMap* map) {
   newest_ = kNoId;
 }
 
-void LocalMapper::Finish(SlamMap* map) {
+double LocalMapper::Finish(SlamMap* map) {
   FinishMapping();
   if (!slot_.IsFree()) Merge(map);
-  remaining_radial_ = final_adjuster_.Adjust(map);
+  return final_adjuster_.Adjust(map);
 }
 
 }  // namespace kinemap

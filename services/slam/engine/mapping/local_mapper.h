@@ -62,10 +62,8 @@ class LocalMapper {
   void Restore(LandmarkCuller::OnTrial on_trial) { landmark_culler_.Replace(std::move(on_trial)); }
 
   /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more.
-  void Finish(SlamMap* map);
-
-  /// Radial distortion that the last Finish believed; 0 before.
-  double remaining_radial() const { return remaining_radial_; }
+  /// Returns the radial distortion that was believed, 0 for none.
+  double Finish(SlamMap* map);
 
  private:
   void Merge(SlamMap* map);
@@ -90,7 +88,6 @@ class LocalMapper {
   MovingLandmarkPlacer moving_placer_;
   MergeSlot slot_;
   KeyframeId newest_ = kNoId;
-  double remaining_radial_ = 0;
   std::optional<Waiting> waiting_;
   std::future<void> running_;  // last, so that it ends before what it uses
 };

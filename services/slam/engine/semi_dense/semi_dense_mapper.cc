@@ -54,6 +54,13 @@ void SemiDenseMapper::Finish(const SlamMap& map) {
   Settle();
 }
 
+void SemiDenseMapper::ChangeLens(const SlamMap* map, const CameraModel& camera) {
+  if (map != nullptr) Finish(*map);
+  while (!under_way_.empty()) CollectFirst();
+  keyframes_.clear();
+  window_ = SemiDenseWindow(options_, camera);
+}
+
 std::vector<SemiDenseCloud> SemiDenseMapper::TakeFinished() { return std::exchange(finished_, {}); }
 
 WindowStep SemiDenseMapper::StepOf(const SlamMap& map) const {

@@ -40,6 +40,10 @@ class SemiDenseMapper {
   /// Nothing more comes to this map: finishes all keyframes that are still open, and waits for it.
   void Finish(const SlamMap& map);
 
+  /// Undistorts images by another model of the lens from now on; finishes all keyframes that are open in `map`, which
+  /// is null where there is none.
+  void ChangeLens(const SlamMap* map, const CameraModel& camera);
+
   /// What was finished since the last call.
   std::vector<SemiDenseCloud> TakeFinished();
 

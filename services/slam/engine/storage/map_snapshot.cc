@@ -14,7 +14,7 @@
 namespace kinemap {
 namespace {
 
-constexpr char kCamera[] = "camera", kMaps[] = "maps", kFeatures[] = "features";
+constexpr char kCamera[] = "camera", kMaps[] = "maps", kFeatures[] = "features", kLens[] = "lens";
 constexpr double kSameParameter = 1e-9;
 
 /// Everything that observations in the map depend on besides the images.
@@ -88,6 +88,18 @@ MapSnapshot::MapSnapshot(const Atlas& atlas, const CameraModel& camera) {
     for (const KeyframeId id : map->LiveKeyframes()) features_[id] = map->keyframe(id).features;
   }
   sections_[kMaps] = std::move(maps.bytes());
+  ByteWriter lens;
+  lens(camera.remaining_radial());
+  sections_[kLens] = std::move(lens.bytes());
+}
+
+double RemainingRadial(const Sections& sections) {
+  const auto found = sections.find(kLens);
+  if (found == sections.end()) return 0;
+  double radial = 0;
+  ByteReader(found->second)(radial);
+  if (!(std::abs(radial) < CameraModel::kMostRemainingRadial)) throw MapFileError("damaged: its camera's distortion");
+  return radial;
 }
 
 std::vector<uint8_t> MapSnapshot::Bytes() const {

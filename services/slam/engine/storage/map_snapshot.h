@@ -31,4 +31,8 @@ class MapSnapshot {
 /// MapFileError for bytes that are no map, contradict themselves or come from another camera or pyramid.
 Sections ReadMaps(const std::vector<uint8_t>& bytes, const CameraModel& camera, Atlas* atlas);
 
+/// The distortion beyond the calibrated one by which a file's features were undistorted (see CameraModel); 0 in files
+/// that do not tell. Throws MapFileError.
+double RemainingRadial(const Sections& sections);
+
 }  // namespace kinemap

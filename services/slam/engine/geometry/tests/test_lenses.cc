@@ -56,6 +56,25 @@ TEST(Lenses, AreRefusedByName) {
   }
 }
 
+TEST(Lenses, BendByWhatCalibrationLeftBeforeAnythingElse) {
+  const CameraModel pinhole(640, 480, 400, 400, 320, 240);
+  const CameraModel radial(640, 480, 400, 400, 320, 240, {-0.1, 0.01, 0.001, 0});
+  for (const CameraModel& calibrated : {pinhole, radial, Fisheye()}) {
+    const CameraModel camera = calibrated.WithRemainingRadial(0.02);
+    EXPECT_TRUE(camera.is_distorted());
+    EXPECT_EQ(camera.Parameters(), calibrated.Parameters());
+    const Eigen::Vector3d ray(0.5, -0.3, 1);
+    const double factor = 1 + 0.02 * (0.25 + 0.09);
+    const Eigen::Vector2d raw = camera.Distort(camera.Project(ray));
+    EXPECT_LT((raw - calibrated.Distort(calibrated.Project({factor * ray.x(), factor * ray.y(), 1}))).norm(), 1e-9);
+    EXPECT_LT((camera.Undistort(raw) - camera.Project(ray)).norm(), 1e-4);
+  }
+  EXPECT_FALSE(pinhole.WithRemainingRadial(0).is_distorted());
+  for (const double wrong : {0.1, std::nan("")}) {
+    EXPECT_THROW(pinhole.WithRemainingRadial(wrong), std::invalid_argument);
+  }
+}
+
 TEST(StereoPair, SeesAPointFartherLeftInTheRightImage) {
   const CameraModel camera = CameraModel(640, 480, 500, 500, 320, 240).WithBaseline(0.4);
   const Eigen::Vector3d point(1, 0.5, 8);

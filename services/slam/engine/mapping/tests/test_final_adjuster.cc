@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/final_adjuster.h"
+#include "mapping/lens_finder.h"
 #include "optimization/radial_projection.h"
 #include "synthetic/scene.h"
 
@@ -63,6 +64,51 @@ TEST(FinalAdjuster, LeavesAMapOfTwoKeyframes) {
   const Eigen::Matrix4d before = map.MapFromKeyframe(1).Matrix();
   EXPECT_EQ(FinalAdjuster({}, TestCamera()).Adjust(&map), 0);
   EXPECT_EQ(map.MapFromKeyframe(1).Matrix(), before);
+}
+
+LensFinderOptions OfFourKeyframes() {
+  LensFinderOptions options;
+  options.adjustment.bundle.radial_sigma = 0.05;
+  options.first_keyframes = 4;
+  return options;
+}
+
+TEST(LensFinder, FindsTheDistortionAtAFrameFixedWhenItBegins) {
+  const SlamMap map = MapThrough(0.03);
+  LensFinder finder(OfFourKeyframes(), TestCamera());
+  finder.Look(map, 100);
+  ASSERT_FALSE(finder.IsFree());
+  int64_t due = 100;
+  while (!finder.IsDue(due)) ++due;
+  EXPECT_GE(due, 110);
+  EXPECT_LT(due, 130);
+  EXPECT_NEAR(finder.Take().radial, 0.03, 0.01);
+  EXPECT_EQ(finder.next_keyframes(), 8);
+  finder.Look(map, due);
+  EXPECT_TRUE(finder.IsFree()) << "before the map has grown";
+}
+
+TEST(LensFinder, BelievesNothingOfAPerfectCameraAndLooksAgainSoon) {
+  const SlamMap map = MapThrough(0);
+  LensFinder finder(OfFourKeyframes(), TestCamera());
+  finder.Look(map, 0);
+  EXPECT_EQ(finder.Take().radial, 0);
+  EXPECT_EQ(finder.next_keyframes(), 5);
+}
+
+TEST(LensFinder, BeginsAgainAfterItWasCancelledAndLeavesOldMapsAlone) {
+  const SlamMap map = MapThrough(0.03);
+  LensFinderOptions options = OfFourKeyframes();
+  LensFinder finder(options, TestCamera());
+  finder.Look(map, 0);
+  finder.Cancel();
+  EXPECT_TRUE(finder.IsFree());
+  finder.Look(map, 1);
+  EXPECT_FALSE(finder.IsFree());
+  options.most_keyframes = 3;
+  LensFinder young(options, TestCamera());
+  young.Look(map, 0);
+  EXPECT_TRUE(young.IsFree());
 }
 
 }  // namespace

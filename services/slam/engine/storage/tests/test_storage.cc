@@ -123,6 +123,19 @@ TEST_F(MapFile, IsRefusedWhenTwoMapsGoOnWithTheSameIds) {
   EXPECT_EQ(WhyRefused(BytesOf(atlas_)), "damaged: ids of block 7 in map 1");
 }
 
+TEST_F(MapFile, TellsTheDistortionThatItsFeaturesAreFreeOf) {
+  EXPECT_EQ(RemainingRadial(UnpackSections(bytes_)), 0);
+  Sections sections = UnpackSections(MapSnapshot(atlas_, TestCamera().WithRemainingRadial(0.015)).Bytes());
+  EXPECT_EQ(RemainingRadial(sections), 0.015);
+  Atlas read(0, TestScales());
+  ReadMaps(PackSections(sections), TestCamera(), &read);
+  EXPECT_EQ(read.maps().size(), 2u);
+  sections["lens"].back() = 0x7f;
+  EXPECT_THROW(RemainingRadial(sections), MapFileError);
+  sections.erase("lens");
+  EXPECT_EQ(RemainingRadial(sections), 0) << "of an earlier version";
+}
+
 /// What a reader would do with a map that it was given.
 void WalkThrough(Atlas* atlas) {
   for (const auto& map : atlas->maps()) {
