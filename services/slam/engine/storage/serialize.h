@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -20,16 +21,26 @@ namespace kinemap {
 // The fields of each struct, in the order of the file. They are taken apart by structured bindings, so that a struct
 // that gains a field does not compile here before it is written too.
 
+/// Whatever is computed with a transform that is none ends as an index somewhere.
+inline void RequireTransform(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation, double scale) {
+  constexpr double kTolerance = 1e-3;
+  if (std::abs(rotation.norm() - 1) < kTolerance && translation.allFinite() && std::isfinite(scale) && scale > 0)
+    return;
+  throw MapFileError("damaged: a pose");
+}
+
 template <typename Archive>
 void Serialize(Archive& archive, RigidTransform& transform) {
   auto& [rotation, translation] = transform;
   archive(rotation, translation);
+  if constexpr (Archive::kReads) RequireTransform(rotation, translation, 1);
 }
 
 template <typename Archive>
 void Serialize(Archive& archive, SimilarityTransform& transform) {
   auto& [rotation, translation, scale] = transform;
   archive(rotation, translation, scale);
+  if constexpr (Archive::kReads) RequireTransform(rotation, translation, scale);
 }
 
 template <typename Archive>
