@@ -335,6 +335,7 @@ bool Engine::NeedsKeyframe(const Frame& frame, int tracked) const {
   // In a map of two keyframes no landmark has three views yet.
   const int min_views = map()->live_keyframe_count() <= 2 ? 2 : 3;
   quality.reference_tracked = map()->CountTracked(frame.reference_keyframe_id, min_views);
+  quality.newest_tracked = map()->CountTracked(map()->last_keyframe_id(), 2);
   if (map()->metric_scale()) CountClose(frame, &quality);
   return keyframe_policy_.NeedsKeyframe(quality);
 }

@@ -16,7 +16,8 @@ template <typename Archive>
 void Engine::SessionFields(Archive& archive) {
   SessionArchive parts(&archive, camera_, scales_.levels());
   TrackerState tracker = tracker_.state();
-  auto& [last, last_from_reference, last_scale, velocity, lost_frames, frames_since_relocalization] = tracker;
+  auto& [last, last_from_reference, last_scale, motion, lost_frames, frames_since_relocalization] = tracker;
+  auto& [velocity, motion_covariance, turn_noise, shift_noise, motion_depth] = motion;
   LoopCloserState loops = loop_closer_.state();
   LateMetricScale::State late_scale = late_scale_.state();
   InitializerState initializer = initializer_.state();
@@ -25,8 +26,9 @@ void Engine::SessionFields(Archive& archive) {
   int lost_in_map = lost_policy_.lost_frames(), features = feature_budget_.next();
   int next_lens = lens_finder_.next_keyframes();
   archive(frame_index_, last_keyframe_index_, last_timestamp_ns_, must_be_recognised_, lost_in_map, features, next_lens,
-          on_trial, objects, last_from_reference, last_scale, velocity, lost_frames, frames_since_relocalization,
-          loops.candidates, loops.keyframes_since_loop, late_scale.map_id, late_scale.metres_per_unit, late_frames_);
+          on_trial, objects, last_from_reference, last_scale, velocity, motion_covariance, turn_noise, shift_noise,
+          motion_depth, lost_frames, frames_since_relocalization, loops.candidates, loops.keyframes_since_loop,
+          late_scale.map_id, late_scale.metres_per_unit, late_frames_);
   parts(last);
   parts(initializer);
   parts(waiting_);
@@ -47,6 +49,8 @@ void Engine::SessionFields(Archive& archive) {
   }
   if constexpr (Archive::kReads) {
     Require(archive.IsAtEnd(), "a session of other options");
+    Require(motion_covariance.allFinite() && std::isfinite(turn_noise + shift_noise + motion_depth),
+            "what is known of the motion");
     Require(features >= options_.features && features <= 2 * options_.features, "number of features");
     Require(map() == nullptr || map()->FindKeyframe(last.reference_keyframe_id) != nullptr,
             "the last frame's reference");

@@ -34,6 +34,14 @@ RigidTransform RigidTransform::PerturbedInTarget(const Vector6d& step) const {
   return {turn * rotation, turn * translation + step.head<3>()};
 }
 
+Vector6d RigidTransform::StepInTargetFrom(const RigidTransform& from) const {
+  const Eigen::Quaterniond turn = rotation * from.rotation.conjugate();
+  const Eigen::AngleAxisd angle_axis(turn);
+  Vector6d step;
+  step << translation - turn * from.translation, angle_axis.angle() * angle_axis.axis();
+  return step;
+}
+
 Eigen::Quaterniond RotationFromVector(const Eigen::Vector3d& rotation_vector) {
   const double half_angle = 0.5 * rotation_vector.norm();
   // sin(x)/x loses its digits near zero, where its series is exact to rounding.

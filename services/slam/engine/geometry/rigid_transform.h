@@ -32,6 +32,9 @@ struct RigidTransform {
   /// Moves this transform by a small step (translation, rotation vector) expressed in its target frame:
   /// R' = Exp(phi) R, t' = Exp(phi) t + rho.
   RigidTransform PerturbedInTarget(const Vector6d& step) const;
+
+  /// The step that moves `from` here: from.PerturbedInTarget(step) is this transform.
+  Vector6d StepInTargetFrom(const RigidTransform& from) const;
 };
 
 /// The rotation of `rotation_vector` (axis times angle, radians).

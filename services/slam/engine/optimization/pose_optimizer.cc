@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kOutlierBound = 5.991;        // 95 % of chi-squared, two degrees of freedom
 constexpr double kStereoOutlierBound = 7.815;  // three
+constexpr double kPriorBound = 12.592;         // six
+constexpr double kFarthestExpected = 22.458;   // 99.9 %
 constexpr int kRounds = 4;
 constexpr int kRobustRounds = 2;
 constexpr int kIterations = 10;
@@ -25,6 +27,11 @@ double RightError(const CameraModel& camera, const PoseObservation& observation,
 }
 
 }  // namespace
+
+bool PosePrior::Contains(const RigidTransform& pose) const {
+  const Vector6d step = pose.StepInTargetFrom(camera_from_map);
+  return step.dot(information * step) <= kFarthestExpected;
+}
 
 struct PoseOptimizer::NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
@@ -71,8 +78,24 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
   return equations;
 }
 
+void PoseOptimizer::AddPrior(const PosePrior& prior, const RigidTransform& camera_from_map,
+                             NormalEquations* equations) const {
+  const Vector6d step = camera_from_map.StepInTargetFrom(prior.camera_from_map);
+  const double squared = step.dot(prior.information * step);
+  const double weight = squared > kPriorBound ? std::sqrt(kPriorBound / squared) : 1;
+  equations->cost += squared > kPriorBound ? 2 * std::sqrt(kPriorBound * squared) - kPriorBound : squared;
+  equations->hessian += weight * prior.information;
+  equations->gradient += weight * prior.information * step;
+}
+
 PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_map,
-                                     const std::vector<PoseObservation>& observations) const {
+                                     const std::vector<PoseObservation>& observations,
+                                     const std::optional<PosePrior>& prior) const {
+  const auto linearize = [&](const RigidTransform& camera_from_map, const std::vector<bool>& inlier, bool robust) {
+    NormalEquations equations = Linearize(camera_from_map, observations, inlier, robust);
+    if (prior) AddPrior(*prior, camera_from_map, &equations);
+    return equations;
+  };
   PoseEstimate estimate;
   estimate.camera_from_map = initial_camera_from_map;
   estimate.inlier.assign(observations.size(), true);
@@ -83,7 +106,7 @@ PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_m
   for (int round = 0; round < kRounds; ++round) {
     const bool robust = round < kRobustRounds;
     double damping = 1e-6;
-    NormalEquations equations = Linearize(estimate.camera_from_map, observations, estimate.inlier, robust);
+    NormalEquations equations = linearize(estimate.camera_from_map, estimate.inlier, robust);
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       Matrix6d damped = equations.hessian;
       damped.diagonal() *= 1 + damping;
@@ -91,7 +114,7 @@ PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_m
       const Vector6d step = damped.ldlt().solve(-equations.gradient);
       if (!step.allFinite()) break;
       const RigidTransform moved = estimate.camera_from_map.PerturbedInTarget(step);
-      const NormalEquations next = Linearize(moved, observations, estimate.inlier, robust);
+      const NormalEquations next = linearize(moved, estimate.inlier, robust);
       if (next.cost > equations.cost) {
         damping = std::max(damping, 1e-6) * 10;
         if (damping > 1e4) break;
@@ -115,7 +138,7 @@ PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_m
     }
     if (estimate.inliers < kLeastObservations) return estimate;
   }
-  estimate.information = Linearize(estimate.camera_from_map, observations, estimate.inlier, false).hessian;
+  estimate.information = linearize(estimate.camera_from_map, estimate.inlier, false).hessian;
   return estimate;
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geometry/camera_model.h"
@@ -21,25 +22,37 @@ struct PoseEstimate {
   RigidTransform camera_from_map;
   std::vector<bool> inlier;  ///< one an observation
   int inliers = 0;
-  /// Inverse covariance of a step (translation, rotation vector) in the camera frame, from the inliers.
+  /// Inverse covariance of a step (translation, rotation vector) in the camera frame, from inliers and prior.
   Matrix6d information = Matrix6d::Zero();
+};
+
+/// Where a camera is expected before it sees anything.
+struct PosePrior {
+  RigidTransform camera_from_map;
+  Matrix6d information;  ///< inverse covariance of a step (translation, rotation vector) in the camera frame
+
+  /// Whether a pose is one of the 99.9 % that are nearest to the expected one.
+  bool Contains(const RigidTransform& pose) const;
 };
 
 /// Pose of one camera against fixed points: Levenberg-Marquardt on the reprojection error with Huber's loss; after
 /// each of four rounds observations beyond the 95 % bound of chi-squared (of two degrees of freedom, of three with
 /// a right image) are left out (and may come back), and the last
-/// two rounds are quadratic (Mur-Artal and Tardos 2015, section V).
+/// two rounds are quadratic (Mur-Artal and Tardos 2015, section V). A prior pulls like the observations do, and in all
+/// rounds: Huber's loss bounds its pull on a camera that did not move as expected.
 class PoseOptimizer {
  public:
   explicit PoseOptimizer(const CameraModel& camera) : camera_(camera) {}
 
-  PoseEstimate Optimize(const RigidTransform& initial_camera_from_map,
-                        const std::vector<PoseObservation>& observations) const;
+  PoseEstimate Optimize(const RigidTransform& initial_camera_from_map, const std::vector<PoseObservation>& observations,
+                        const std::optional<PosePrior>& prior = std::nullopt) const;
 
  private:
   struct NormalEquations;
   NormalEquations Linearize(const RigidTransform& camera_from_map, const std::vector<PoseObservation>& observations,
                             const std::vector<bool>& inlier, bool robust) const;
+
+  void AddPrior(const PosePrior& prior, const RigidTransform& camera_from_map, NormalEquations* equations) const;
 
   CameraModel camera_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/camera_tracker.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "tracking/frame_matcher.h"
@@ -28,7 +29,9 @@ CameraTracker::CameraTracker(const CameraTrackerOptions& options, const CameraMo
 
 void CameraTracker::Start(const SlamMap& map, const Frame& frame, const std::optional<RigidTransform>& previous) {
   motion_model_.Reset();
-  if (previous) motion_model_.Update(*previous, frame.camera_from_map);
+  if (previous) {
+    motion_model_.Start(*previous, frame.camera_from_map, map.MedianDepth(frame.reference_keyframe_id));
+  }
   lost_frames_ = 0;
   frames_since_relocalization_ = TrackerState().frames_since_relocalization;
   Remember(map, frame);
@@ -38,7 +41,7 @@ void CameraTracker::Restore(const TrackerState& state) {
   last_ = state.last;
   last_from_reference_ = state.last_from_reference;
   last_scale_ = state.last_scale;
-  motion_model_.Restore(state.velocity);
+  motion_model_.Restore(state.motion);
   lost_frames_ = state.lost_frames;
   frames_since_relocalization_ = state.frames_since_relocalization;
 }
@@ -56,32 +59,33 @@ void CameraTracker::Remember(const SlamMap& map, const Frame& frame) {
   last_scale_ = map.MapFromAnchor(frame.reference_keyframe_id).scale;
 }
 
-bool CameraTracker::TrackLastFrame(const SlamMap& map, Frame* frame) const {
-  if (!motion_model_.IsKnown()) return false;
-  const RigidTransform predicted = motion_model_.Predict(last_.camera_from_map);
-  for (const double factor : {1.0, 2.0}) {
-    frame->camera_from_map = predicted;
-    if (MatchLastFrame(map, camera_, last_, factor * options_.motion_radius_px, frame) < options_.min_motion_matches) {
+double CameraTracker::LikelyRadiusPx(const PredictedPose& predicted) const {
+  const double radius_px = options_.least_radius_px + predicted.RadiusPx(camera_.fx_px(), motion_model_.state().depth);
+  return std::min(options_.motion_radius_px, radius_px);
+}
+
+bool CameraTracker::TrackLastFrame(const SlamMap& map, const PredictedPose& predicted, Frame* frame) const {
+  const double likely_px = LikelyRadiusPx(predicted);
+  for (const double radius_px : {likely_px, 2 * options_.motion_radius_px}) {
+    frame->camera_from_map = predicted.camera_from_map;
+    if (MatchLastFrame(map, camera_, last_, radius_px, frame) < options_.min_motion_matches) {
       continue;
     }
-    if (solver_.Solve(map, frame).inliers >= options_.min_pose_inliers) return true;
+    if (solver_.Solve(map, frame, predicted.Prior()).inliers >= options_.min_pose_inliers) return true;
   }
   return false;
 }
 
-bool CameraTracker::TrackBlindly(const SlamMap& map, Frame* frame) const {
-  if (!motion_model_.IsKnown()) return false;
-  RigidTransform predicted = last_.camera_from_map;
-  for (int i = 0; i <= lost_frames_; ++i) predicted = motion_model_.Predict(predicted);
-  frame->camera_from_map = predicted;
+bool CameraTracker::TrackByPrediction(const SlamMap& map, const PredictedPose& predicted, Frame* frame) const {
+  frame->camera_from_map = predicted.camera_from_map;
   frame->ForgetMatches();
   const KeyframeId reference = map.LiveKeyframe(last_.reference_keyframe_id);
-  int matches = ProjectKeyframe(map, camera_, reference, options_.motion_radius_px, kMaxHammingDistance, frame);
+  const double radius_px = LikelyRadiusPx(predicted);
+  ProjectKeyframe(map, camera_, reference, radius_px, kMaxHammingDistance, frame);
   for (const KeyframeId neighbor : map.covisibility().Neighbors(reference, kBlindNeighbors)) {
-    matches += ProjectKeyframe(map, camera_, neighbor, options_.motion_radius_px, kMaxHammingDistance, frame);
+    ProjectKeyframe(map, camera_, neighbor, radius_px, kMaxHammingDistance, frame);
   }
-  if (matches < options_.min_motion_matches) return false;
-  return solver_.Solve(map, frame).inliers >= options_.min_pose_inliers;
+  return solver_.Solve(map, frame, predicted.Prior()).inliers >= options_.min_pose_inliers;
 }
 
 bool CameraTracker::TrackReferenceKeyframe(const SlamMap& map, Frame* frame) const {
@@ -107,18 +111,38 @@ TrackedPose CameraTracker::Recover(SlamMap* map, int lost_frames, Frame* frame) 
   return result;
 }
 
-void CameraTracker::FollowLocalMap(SlamMap* map, Frame* frame, TrackedPose* result) const {
+void CameraTracker::FollowLocalMap(SlamMap* map, const PredictedPose* expected, Frame* frame,
+                                   TrackedPose* result) const {
   const auto start = std::chrono::steady_clock::now();
   const bool recent = result->relocalized || frames_since_relocalization_ < options_.recent_frames;
-  result->estimate = local_map_tracker_.Track(map, result->relocalized ? kRelocalizedRadiusFactor : 1.0, frame);
-  const int needed = recent ? options_.min_relocalized_inliers : options_.min_local_inliers;
-  result->tracked = result->estimate.inliers >= needed;
+  const std::optional<PosePrior> prior = expected ? std::optional(expected->Prior()) : std::nullopt;
+  const PoseEstimate estimate =
+      local_map_tracker_.Track(map, result->relocalized ? kRelocalizedRadiusFactor : 1.0, frame, prior);
+  int needed = recent ? options_.min_relocalized_inliers : options_.min_local_inliers;
+  const double share =
+      static_cast<double>(estimate.inliers) / static_cast<double>(std::max<size_t>(1, estimate.inlier.size()));
+  if (prior && prior->Contains(frame->camera_from_map) && share >= options_.min_expected_share) {
+    needed = options_.min_expected_inliers;
+  }
+  result->estimate = estimate;
+  result->tracked = estimate.inliers >= needed;
   result->reason.clear();
   if (!result->tracked) {
-    result->reason = "lost: " + std::to_string(result->estimate.inliers) + " landmarks of the local map found, " +
+    result->reason = "lost: " + std::to_string(estimate.inliers) + " landmarks of the local map found, " +
                      std::to_string(needed) + " needed";
   }
   result->local_map_ms += MillisecondsSince(start);
+}
+
+void CameraTracker::LearnMotion(const std::optional<PredictedPose>& expected, const Frame& frame,
+                                const PoseEstimate& estimate) {
+  if (expected) {
+    motion_model_.Correct(*expected, frame.camera_from_map, estimate.information);
+  } else if (lost_frames_ == 0 && motion_model_.IsKnown()) {
+    motion_model_.StartAgain(last_.camera_from_map, frame.camera_from_map);
+  } else {
+    motion_model_.Reset();
+  }
 }
 
 TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
@@ -133,22 +157,27 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   frame->reference_keyframe_id = map->LiveKeyframe(last_.reference_keyframe_id);
 
   // What was lost a moment ago is likely to be seen again from where it was seen last.
-  if (lost_frames_ == 0 && TrackLastFrame(*map, frame)) FollowLocalMap(map, frame, &result);
   const bool lost_recently = lost_frames_ <= options_.recent_frames;
-  if (!result.tracked && lost_recently && TrackReferenceKeyframe(*map, frame)) FollowLocalMap(map, frame, &result);
-  if (!result.tracked && lost_recently && TrackBlindly(*map, frame)) FollowLocalMap(map, frame, &result);
+  std::optional<PredictedPose> expected;
+  if (motion_model_.IsKnown() && lost_recently) {
+    expected = motion_model_.Predict(last_.camera_from_map, lost_frames_ + 1);
+    if (lost_frames_ == 0 && TrackLastFrame(*map, *expected, frame)) FollowLocalMap(map, &*expected, frame, &result);
+    if (!result.tracked && TrackByPrediction(*map, *expected, frame)) FollowLocalMap(map, &*expected, frame, &result);
+  }
+  if (!result.tracked) {
+    expected.reset();
+    if (lost_recently && TrackReferenceKeyframe(*map, frame)) FollowLocalMap(map, nullptr, frame, &result);
+  }
   if (!result.tracked) {
     const Eigen::Vector3d last_center = last_.camera_from_map.Inverse().translation;
     result.relocalized = relocalizer_.Relocalize(*map, last_center, lost_frames_, frame);
-    if (result.relocalized) FollowLocalMap(map, frame, &result);
+    if (result.relocalized) FollowLocalMap(map, nullptr, frame, &result);
   }
   if (!result.tracked && result.reason.empty()) result.reason = "lost: no keyframe recognised";
   result.match_ms = MillisecondsSince(start) - result.local_map_ms;
   if (result.tracked) {
     if (result.relocalized) frames_since_relocalization_ = 0;
-    // After a short blindness the speed of before is the best guess.
-    if (lost_frames_ == 0) motion_model_.Update(last_.camera_from_map, frame->camera_from_map);
-    if (result.relocalized) motion_model_.Reset();
+    LearnMotion(expected, *frame, result.estimate);
     lost_frames_ = 0;
     Remember(*map, *frame);
   } else {

@@ -14,10 +14,13 @@
 namespace kinemap {
 
 struct CameraTrackerOptions {
-  double motion_radius_px = 15;      ///< search around the predicted place, finest octave
+  double motion_radius_px = 15;      ///< widest search around the predicted place, finest octave
+  double least_radius_px = 4;        ///< the same where the prediction is exact
   int min_motion_matches = 20;       ///< fewer, and the search is repeated twice as wide
   int min_pose_inliers = 10;         ///< of the first pose, before the local map
   int min_local_inliers = 30;        ///< of the final pose
+  int min_expected_inliers = 12;     ///< the same of a pose that is where the camera was expected
+  double min_expected_share = 0.5;   ///< of the matches that must be inliers then
   int min_relocalized_inliers = 50;  ///< the same while the last relocalisation is recent
   int recent_frames = 10;
   RelocalizerOptions relocalizer;
@@ -36,13 +39,14 @@ struct TrackerState {
   Frame last;
   RigidTransform last_from_reference;
   double last_scale = 1;
-  std::optional<RigidTransform> velocity;  ///< current camera from last camera
+  CameraMotion motion;
   int lost_frames = 0;
   int frames_since_relocalization = 1 << 20;
 };
 
-/// Follows the camera from frame to frame: constant velocity, else the reference keyframe, else relocalisation; then
-/// the local map.
+/// Follows the camera from frame to frame: from the last frame, else from what is mapped where it is expected, else by
+/// the reference keyframe's looks, else by relocalisation; then in the local map. Where few landmarks are left, behind
+/// a bus say, what is known of the camera's motion holds the pose, and fewer landmarks do while they agree with it.
 class CameraTracker {
  public:
   /// `places` helps a lost camera; it may be null, and must outlive this.
@@ -62,10 +66,10 @@ class CameraTracker {
   void FollowKeyframe(const SlamMap& map, KeyframeId keyframe_id);
 
   /// The map's unit changed: what was one of its units is now `factor` of them.
-  void ChangeUnits(double factor) { motion_model_.ChangeUnits(factor); }
+  void ChangeUnits(double factor) { motion_model_.Rescale(factor); }
 
   TrackerState state() const {
-    return {last_,        last_from_reference_,        last_scale_, motion_model_.velocity(),
+    return {last_,        last_from_reference_,        last_scale_, motion_model_.state(),
             lost_frames_, frames_since_relocalization_};
   }
   void Restore(const TrackerState& state);
@@ -73,12 +77,14 @@ class CameraTracker {
   int frames_since_relocalization() const { return frames_since_relocalization_; }
 
  private:
-  bool TrackLastFrame(const SlamMap& map, Frame* frame) const;
+  double LikelyRadiusPx(const PredictedPose& predicted) const;
+  bool TrackLastFrame(const SlamMap& map, const PredictedPose& predicted, Frame* frame) const;
   bool TrackReferenceKeyframe(const SlamMap& map, Frame* frame) const;
-  /// Expects the camera where its last speed would have brought it since it was lost.
-  bool TrackBlindly(const SlamMap& map, Frame* frame) const;
-  /// Says in the result whether enough of the local map is found from the frame's pose.
-  void FollowLocalMap(SlamMap* map, Frame* frame, TrackedPose* result) const;
+  /// Finds the landmarks around the last place where the camera is expected since it was lost.
+  bool TrackByPrediction(const SlamMap& map, const PredictedPose& predicted, Frame* frame) const;
+  /// Says in the result whether enough of the local map is found from the frame's pose. `expected`: how it came there.
+  void FollowLocalMap(SlamMap* map, const PredictedPose* expected, Frame* frame, TrackedPose* result) const;
+  void LearnMotion(const std::optional<PredictedPose>& expected, const Frame& frame, const PoseEstimate& estimate);
   void Remember(const SlamMap& map, const Frame& frame);
 
   CameraTrackerOptions options_;

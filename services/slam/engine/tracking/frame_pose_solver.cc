@@ -5,7 +5,7 @@
 
 namespace kinemap {
 
-PoseEstimate FramePoseSolver::Solve(const SlamMap& map, Frame* frame) const {
+PoseEstimate FramePoseSolver::Solve(const SlamMap& map, Frame* frame, const std::optional<PosePrior>& prior) const {
   std::vector<PoseObservation> observations;
   std::vector<int> keypoints;
   for (int i = 0; i < frame->size(); ++i) {
@@ -20,7 +20,7 @@ PoseEstimate FramePoseSolver::Solve(const SlamMap& map, Frame* frame) const {
                             RightXIn(map, keypoint)});
     keypoints.push_back(i);
   }
-  PoseEstimate estimate = optimizer_.Optimize(frame->camera_from_map, observations);
+  PoseEstimate estimate = optimizer_.Optimize(frame->camera_from_map, observations, prior);
   frame->camera_from_map = estimate.camera_from_map;
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (!estimate.inlier[i]) frame->landmark_ids[keypoints[i]] = kNoId;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "map/frame.h"
 #include "map/slam_map.h"
 #include "optimization/pose_optimizer.h"
@@ -12,7 +14,8 @@ class FramePoseSolver {
  public:
   explicit FramePoseSolver(const CameraModel& camera) : optimizer_(camera) {}
 
-  PoseEstimate Solve(const SlamMap& map, Frame* frame) const;
+  /// `prior`: where the camera was expected.
+  PoseEstimate Solve(const SlamMap& map, Frame* frame, const std::optional<PosePrior>& prior = std::nullopt) const;
 
  private:
   PoseOptimizer optimizer_;

@@ -2,6 +2,7 @@
 #include "tracking/local_map_tracker.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -20,6 +21,18 @@ constexpr double kStraightRadiusPx = 2.5, kOtherRadiusPx = 4.0;
 // With fewer landmarks the pose is worth a second, wider search around it.
 constexpr int kFewInliers = 100;
 constexpr double kWiderRadiusFactor = 2;
+constexpr double kHiddenRadiusPx = 12;
+
+// Whether something that stays out of tracking is in front of what would be seen there: the features around say so.
+bool IsHidden(const Eigen::Vector3d& point_in_camera, const CameraModel& camera, const Frame& frame) {
+  if (point_in_camera.z() <= 0) return false;
+  std::vector<int> nearby;
+  frame.features->grid.FindNear(camera.Project(point_in_camera), kHiddenRadiusPx, 0, std::numeric_limits<int>::max(),
+                                &nearby);
+  const auto tracked =
+      std::count_if(nearby.begin(), nearby.end(), [&](int i) { return frame.labels[i].role == FeatureRole::kTracked; });
+  return 2 * tracked < static_cast<std::ptrdiff_t>(nearby.size());
+}
 
 }  // namespace
 
@@ -98,25 +111,34 @@ bool LocalMapTracker::IsFoundByChance(const SlamMap& map, const Searched& search
   return IsByChance(outcome);
 }
 
-PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* frame) const {
+PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* frame,
+                                    const std::optional<PosePrior>& prior) const {
   const std::vector<KeyframeId> keyframes = LocalKeyframes(*map, *frame);
   if (!keyframes.empty()) frame->reference_keyframe_id = keyframes.front();
   Searched searched;
   SearchLocalLandmarks(map, keyframes, radius_factor, &searched, frame);
-  PoseEstimate estimate = solver_.Solve(*map, frame);
+  PoseEstimate estimate = solver_.Solve(*map, frame, prior);
   if (estimate.inliers < kFewInliers) {
     SearchLocalLandmarks(map, keyframes, kWiderRadiusFactor * radius_factor, &searched, frame);
-    estimate = solver_.Solve(*map, frame);
+    estimate = solver_.Solve(*map, frame, prior);
   }
   if (IsFoundByChance(*map, searched, *frame)) {
     frame->ForgetMatches();
     estimate.inliers = 0;
     return estimate;
   }
-  for (const LandmarkId id : searched.in_view) ++map->FindLandmark(id)->visible;
   for (const LandmarkId id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
-    if (landmark != nullptr) ++landmark->found;
+    if (landmark == nullptr) continue;
+    ++landmark->found;
+    ++landmark->visible;
+    searched.in_view.erase(landmark->id);
+  }
+  for (const LandmarkId id : searched.in_view) {
+    Landmark* landmark = map->FindLandmark(id);
+    if (!IsHidden(frame->camera_from_map * map->PositionInMap(*landmark), camera_, *frame)) {
+      ++landmark->visible;
+    }
   }
   return estimate;
 }

@@ -18,9 +18,10 @@ class LocalMapTracker {
 
   /// Chooses the local map by the frame's matches, finds more matches in it and optimises the pose. Sets the frame's
   /// reference keyframe (the one that shares most landmarks with it) and counts in each landmark whether it was found.
-  /// With `radius_factor` > 1 the search is wider (after a relocalisation). A pose that chance explains keeps no match
-  /// and has no inliers.
-  PoseEstimate Track(SlamMap* map, double radius_factor, Frame* frame) const;
+  /// With `radius_factor` > 1 the search is wider (after a relocalisation). `prior`: where the camera was expected. A
+  /// pose that chance explains keeps no match and has no inliers.
+  PoseEstimate Track(SlamMap* map, double radius_factor, Frame* frame,
+                     const std::optional<PosePrior>& prior = std::nullopt) const;
 
  private:
   std::vector<KeyframeId> LocalKeyframes(const SlamMap& map, const Frame& frame) const;

@@ -176,5 +176,13 @@ TEST_F(TwoViews, TooFewPairsScoreNothing) {
   EXPECT_EQ(EstimateFundamental(pairs_, 1, 10, random).score, 0);
 }
 
+TEST(RigidTransform, KnowsTheStepBetweenTwo) {
+  const RigidTransform from(RotationFromVector({0.3, -1, 0.2}), Eigen::Vector3d(4, -2, 1));
+  Vector6d step;
+  step << 0.1, -0.2, 0.3, 0.02, -0.4, 0.1;
+  EXPECT_LT((from.PerturbedInTarget(step).StepInTargetFrom(from) - step).norm(), 1e-12);
+  EXPECT_LT(from.StepInTargetFrom(from).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace kinemap

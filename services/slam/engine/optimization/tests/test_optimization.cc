@@ -59,6 +59,39 @@ TEST(PoseOptimizer, CovarianceIsTheSpreadOfItsEstimates) {
   for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(spread(axis, axis) / covariance(axis, axis), 1, 0.25) << axis;
 }
 
+PosePrior PriorAt(const RigidTransform& camera_from_map, double sigma) {
+  return {camera_from_map, Matrix6d::Identity() / (sigma * sigma)};
+}
+
+TEST(PoseOptimizer, PriorHoldsWhatFewPointsLeaveOpen) {
+  // Far points close together: turning and shifting look nearly the same.
+  const Scene scene(8, 1, 28, 32);
+  const RigidTransform truth = CameraAt({0, 0, 0.5}, 0.02);
+  const std::vector<PoseObservation> observations = Observations(scene, truth, 0.5, 4);
+  const PoseOptimizer optimizer(TestCamera());
+  const PoseEstimate free = optimizer.Optimize(truth, observations);
+  const PoseEstimate held = optimizer.Optimize(truth, observations, PriorAt(CameraAt({0.01, 0, 0.5}, 0.02), 0.02));
+  EXPECT_GT((free.camera_from_map * truth.Inverse()).translation.norm(), 0.1);
+  EXPECT_LT((held.camera_from_map * truth.Inverse()).translation.norm(), 0.03);
+  EXPECT_LT(held.information.inverse().diagonal().maxCoeff(), 0.02 * 0.02);
+}
+
+TEST(PoseOptimizer, WrongPriorHardlyMovesAPoseOfManyPoints) {
+  const Scene scene(200, 3, 5, 15);
+  const RigidTransform truth = CameraAt({0.5, -0.2, 1}, 0.1);
+  const PoseEstimate estimate = PoseOptimizer(TestCamera())
+                                    .Optimize(CameraAt({0.2, 0, 0.6}), Observations(scene, truth, 0.5, 3),
+                                              PriorAt(CameraAt({0.2, 0, 0.6}), 0.005));
+  EXPECT_LT((estimate.camera_from_map.Inverse().translation - Eigen::Vector3d(0.5, -0.2, 1)).norm(), 0.03);
+  EXPECT_GT(estimate.inliers, 180);
+}
+
+TEST(PosePrior, ContainsWhatIsLikely) {
+  const PosePrior prior = PriorAt(CameraAt({0, 0, 0}), 0.1);
+  EXPECT_TRUE(prior.Contains(CameraAt({0.3, 0, 0}, 0.3)));
+  EXPECT_FALSE(prior.Contains(CameraAt({0.3, 0, 0}, 0.4)));
+}
+
 TEST(PoseOptimizer, SaysNothingOfTwoPoints) {
   const Scene scene(2, 3, 5, 15);
   EXPECT_EQ(PoseOptimizer(TestCamera()).Optimize({}, Observations(scene, {}, 0, 1)).inliers, 0);

@@ -49,6 +49,21 @@ TEST(KeyframePolicy, NeedsEveryConditionOfTheThesis) {
   EXPECT_TRUE(policy.NeedsKeyframe(quality));
 }
 
+TEST(KeyframePolicy, WaitsForNothingWhenTheMapRunsOut) {
+  const KeyframePolicy policy({});
+  const TrackingQuality starving{1, 1, false, 40, 30, 60};
+  EXPECT_TRUE(policy.NeedsKeyframe(starving));
+  TrackingQuality quality = starving;
+  quality.newest_tracked = 44;
+  EXPECT_FALSE(policy.NeedsKeyframe(quality)) << "the newest keyframe sees no more than this frame";
+  quality = starving;
+  quality.tracked = 11;
+  EXPECT_FALSE(policy.NeedsKeyframe(quality)) << "the pose is too uncertain to map by";
+  quality.tracked = 100;
+  quality.newest_tracked = 200;
+  EXPECT_FALSE(policy.NeedsKeyframe(quality));
+}
+
 TEST(MapInitializer, WaitsForParallaxAndThenFindsTheMotion) {
   const Scene scene(400, 4, 6, 16);
   MapInitializer initializer({}, TestCamera());
@@ -190,6 +205,60 @@ TEST_F(Tracker, IsLostInAnEmptyImageAndFoundAgain) {
   EXPECT_TRUE(pose.relocalized);
   EXPECT_EQ(tracker_.frames_since_relocalization(), 0);
   EXPECT_LT(CenterError(frame, center), 0.05);
+}
+
+TEST_F(Tracker, HoldsThePoseByFewLandmarksWhereItIsExpected) {
+  const auto label = [](int point) {
+    return point % 20 == 0 ? FeatureLabel{} : FeatureLabel{FeatureRole::kSighted, MotionState::kMoving, 1, 3};
+  };
+  for (int step = 1; step <= 6; ++step) {
+    const Eigen::Vector3d center(0.6 + 0.1 * step, 0, 0);
+    Frame frame = step < 3 ? Seen(scene_, center, 1000 + step)
+                           : scene_.Observe(TestCamera(), TestScales(), CameraAt(center), 1000 + step, 0.3, label);
+    const TrackedPose pose = tracker_.Track(&map_, &frame);
+    ASSERT_TRUE(pose.tracked) << "step " << step << ": " << pose.reason;
+    if (step >= 3) EXPECT_LT(pose.estimate.inliers, 30);
+    EXPECT_LT(CenterError(frame, center), 0.05) << "step " << step;
+  }
+}
+
+TEST_F(Tracker, FewLandmarksElsewhereAreNotEnough) {
+  const auto label = [](int point) {
+    return point % 20 == 0 ? FeatureLabel{} : FeatureLabel{FeatureRole::kSighted, MotionState::kMoving, 1, 3};
+  };
+  Frame frame = scene_.Observe(TestCamera(), TestScales(), CameraAt({0.2, 0.4, -1.5}), 1001, 0.3, label);
+  EXPECT_FALSE(tracker_.Track(&map_, &frame).tracked);
+}
+
+TEST_F(Tracker, GoesOnWhereItIsExpectedAfterAShortBlindness) {
+  const Scene nothing(0, 1, 1, 2);
+  for (int step = 1; step <= 8; ++step) {
+    const Eigen::Vector3d center(0.6 + 0.1 * step, 0, 0);
+    Frame frame = Seen(step > 2 && step < 7 ? nothing : scene_, center, 1000 + step);
+    const TrackedPose pose = tracker_.Track(&map_, &frame);
+    ASSERT_EQ(pose.tracked, step <= 2 || step >= 7) << "step " << step << ": " << pose.reason;
+    EXPECT_FALSE(pose.relocalized);
+    if (pose.tracked) EXPECT_LT(CenterError(frame, center), 0.05);
+  }
+}
+
+TEST_F(Tracker, DoesNotCountAsVisibleWhatAnObjectHides) {
+  // The same scene, but what is on the left belongs to something that moves in front: other descriptors, its labels.
+  const Scene objects(6000, 4, 6, 16, 2);
+  const auto moving = [](int) { return FeatureLabel{FeatureRole::kSighted, MotionState::kMoving, 1, 3}; };
+  std::vector<int> visible;
+  for (const LandmarkId id : map_.LiveLandmarks()) visible.push_back(map_.FindLandmark(id)->visible);
+  const Eigen::Vector3d center(0.7, 0, 0);
+  Frame hidden = objects.Observe(TestCamera(), TestScales(), CameraAt(center), 1001, 0.3, moving);
+  hidden.camera_from_map = CameraAt(center);
+  // What it matched of the map is all that the tracker chooses the local map by.
+  hidden.landmark_ids[0] = map_.LiveLandmarks().front();
+  LocalMapTracker(TestCamera()).Track(&map_, 1, &hidden);
+  int counted = 0;
+  for (size_t i = 0; i < visible.size(); ++i) {
+    counted += map_.FindLandmark(map_.LiveLandmarks()[i])->visible - visible[i];
+  }
+  EXPECT_LT(counted, static_cast<int>(visible.size()) / 4);
 }
 
 TEST_F(Tracker, MovingObjectsDoNotPullThePoseAlong) {
