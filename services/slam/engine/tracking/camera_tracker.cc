@@ -134,14 +134,15 @@ void CameraTracker::FollowLocalMap(SlamMap* map, const PredictedPose* expected, 
   result->local_map_ms += MillisecondsSince(start);
 }
 
-void CameraTracker::LearnMotion(const std::optional<PredictedPose>& expected, const Frame& frame,
-                                const PoseEstimate& estimate) {
+void CameraTracker::LearnMotion(const SlamMap& map, const std::optional<PredictedPose>& expected, const Frame& frame,
+                                const TrackedPose& pose) {
   if (expected) {
-    motion_model_.Correct(*expected, frame.camera_from_map, estimate.information);
-  } else if (lost_frames_ == 0 && motion_model_.IsKnown()) {
-    motion_model_.StartAgain(last_.camera_from_map, frame.camera_from_map);
-  } else {
+    motion_model_.Correct(*expected, frame.camera_from_map, pose.estimate.information);
+  } else if (lost_frames_ > 0 || pose.relocalized) {
     motion_model_.Reset();
+  } else {
+    const double depth = map.MedianDepth(frame.reference_keyframe_id);
+    motion_model_.Start(last_.camera_from_map, frame.camera_from_map, depth);
   }
 }
 
@@ -177,7 +178,7 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
   result.match_ms = MillisecondsSince(start) - result.local_map_ms;
   if (result.tracked) {
     if (result.relocalized) frames_since_relocalization_ = 0;
-    LearnMotion(expected, *frame, result.estimate);
+    LearnMotion(*map, expected, *frame, result);
     lost_frames_ = 0;
     Remember(*map, *frame);
   } else {

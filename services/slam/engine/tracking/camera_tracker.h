@@ -84,7 +84,8 @@ class CameraTracker {
   bool TrackByPrediction(const SlamMap& map, const PredictedPose& predicted, Frame* frame) const;
   /// Says in the result whether enough of the local map is found from the frame's pose. `expected`: how it came there.
   void FollowLocalMap(SlamMap* map, const PredictedPose* expected, Frame* frame, TrackedPose* result) const;
-  void LearnMotion(const std::optional<PredictedPose>& expected, const Frame& frame, const PoseEstimate& estimate);
+  void LearnMotion(const SlamMap& map, const std::optional<PredictedPose>& expected, const Frame& frame,
+                   const TrackedPose& pose);
   void Remember(const SlamMap& map, const Frame& frame);
 
   CameraTrackerOptions options_;

@@ -45,10 +45,6 @@ void MotionModel::Start(const RigidTransform& last, const RigidTransform& curren
   state_.depth = depth;
   state_.turn_noise = Square(kFirstTurn);
   state_.shift_noise = Square(kFirstTurn * depth);
-  StartAgain(last, current);
-}
-
-void MotionModel::StartAgain(const RigidTransform& last, const RigidTransform& current) {
   state_.velocity = current * last.Inverse();
   state_.covariance.setZero();
   state_.covariance.diagonal().segment<3>(6).setConstant(Square(kFirstTurn * state_.depth));

@@ -39,9 +39,6 @@ class MotionModel {
   /// Begins with the motion between two consecutive frames (camera_from_map); `depth`: typical distance of landmarks.
   void Start(const RigidTransform& last, const RigidTransform& current, double depth);
 
-  /// Begins again after a motion that was not foreseen, with the noise known so far.
-  void StartAgain(const RigidTransform& last, const RigidTransform& current);
-
   /// Lengths count `factor` times what they did.
   void Rescale(double factor);
   void Reset() { state_.velocity.reset(); }

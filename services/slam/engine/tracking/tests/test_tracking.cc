@@ -205,6 +205,9 @@ TEST_F(Tracker, IsLostInAnEmptyImageAndFoundAgain) {
   EXPECT_TRUE(pose.relocalized);
   EXPECT_EQ(tracker_.frames_since_relocalization(), 0);
   EXPECT_LT(CenterError(frame, center), 0.05);
+  Frame next = Seen(scene_, {0.4, 0.3, 0.6}, 1021);
+  EXPECT_TRUE(tracker_.Track(&map_, &next).tracked);
+  EXPECT_TRUE(tracker_.state().motion.velocity.has_value()) << "two frames tell how it moves";
 }
 
 TEST_F(Tracker, HoldsThePoseByFewLandmarksWhereItIsExpected) {
