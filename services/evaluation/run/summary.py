@@ -52,11 +52,14 @@ def _error_rows(report: Report) -> list[tuple[str, str]]:
             rows.append((f"ATE {name}", f"none: {error['none_because']}"))
             continue
         ate = error["ate_m"]
+        # The best scale of a metric map's trajectory says how far its metres are off.
+        scale = report["ate"].get(name.removesuffix("_metric"), {}).get("scale") if name.endswith("_metric") else None
         rows.append(
             (
                 f"ATE {name}",
                 f"RMSE {ate['rmse']:.3f} m, mean {ate['mean']:.3f}, median {ate['median']:.3f}, max {ate['max']:.3f}"
-                f" ({error['alignment']}, {error['poses']} of {error['frames']} frames = {error['coverage']:.1%})",
+                f" ({error['alignment']}, {error['poses']} of {error['frames']} frames = {error['coverage']:.1%})"
+                + ("" if scale is None else f", scale {abs(scale - 1):.2%} off"),
             )
         )
     return rows

@@ -231,6 +231,14 @@ def test_summary_names_what_issue_and_user_ask_for(report: Report) -> None:
     assert rows["slam"] == "21.0 ms median, 40.0 ms p95"
 
 
+def test_summary_says_how_far_a_metric_maps_metres_are_off(report: Report) -> None:
+    assert "off" not in dict(summary_rows(report))["ATE final"]
+    final = report["ate"]["final"]
+    report["ate"] = {"final": {**final, "scale": 0.98}, "final_metric": {**final, "alignment": "se3", "scale": 1.0}}
+    rows = dict(summary_rows(report))
+    assert rows["ATE final_metric"].endswith("80.0%), scale 2.00% off")
+
+
 def test_runs_stand_side_by_side(log: SessionLog, report: Report) -> None:
     log.true_poses.clear()
     other = build_report(log, None, {}, RunOutcome())
