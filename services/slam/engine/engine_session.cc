@@ -27,8 +27,8 @@ void Engine::SessionFields(Archive& archive) {
   int next_lens = lens_finder_.next_keyframes();
   archive(frame_index_, last_keyframe_index_, last_timestamp_ns_, must_be_recognised_, lost_in_map, features, next_lens,
           on_trial, objects, last_from_reference, last_scale, velocity, motion_covariance, turn_noise, shift_noise,
-          motion_depth, lost_frames, frames_since_relocalization, loops.candidates, loops.keyframes_since_loop,
-          late_scale.map_id, late_scale.metres_per_unit, late_frames_);
+          motion_depth, lost_frames, frames_since_relocalization, loops.candidates, loops.agreement,
+          loops.keyframes_since_loop, late_scale.map_id, late_scale.metres_per_unit, late_frames_);
   parts(last);
   parts(initializer);
   parts(waiting_);
@@ -54,6 +54,9 @@ void Engine::SessionFields(Archive& archive) {
     Require(features >= options_.features && features <= 2 * options_.features, "number of features");
     Require(map() == nullptr || map()->FindKeyframe(last.reference_keyframe_id) != nullptr,
             "the last frame's reference");
+    Require(loops.agreement.count == 0 || (atlas_.MapOf(loops.agreement.keyframe_id) != nullptr &&
+                                           atlas_.MapOf(loops.agreement.matched_id) != nullptr),
+            "a recognised place");
     for (const LateFramePose& late : late_frames_) {
       Require(atlas_.MapOf(late.reference_keyframe_id) != nullptr, "a late frame's reference");
     }

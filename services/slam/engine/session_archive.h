@@ -9,6 +9,7 @@
 
 #include "ground/ground_scale.h"
 #include "loop_closing/loop_detector.h"
+#include "loop_closing/merge_agreement.h"
 #include "map_update.h"
 #include "semi_dense/semi_dense_state.h"
 #include "storage/feature_codec.h"
@@ -29,6 +30,12 @@ template <typename Archive>
 void Serialize(Archive& archive, LoopDetector::Group& group) {
   auto& [keyframes, streak] = group;
   archive(keyframes, streak);
+}
+
+template <typename Archive>
+void Serialize(Archive& archive, MergeAgreement::State& agreement) {
+  auto& [keyframe_id, matched_id, matched_from_keyframe, count] = agreement;
+  archive(keyframe_id, matched_id, matched_from_keyframe, count);
 }
 
 template <typename Archive>

@@ -28,6 +28,7 @@ LoopCloser::LoopCloser(const LoopCloserOptions& options, const CameraModel& came
       camera_(camera),
       detector_(options.detector),
       verifier_(options.verifier, camera),
+      agreement_(options.agreement),
       fuser_(camera) {}
 
 void LoopCloser::Look(Atlas* atlas, const PlaceIndex& places, KeyframeId keyframe_id, int64_t frame_index) {
@@ -40,6 +41,7 @@ void LoopCloser::Look(Atlas* atlas, const PlaceIndex& places, KeyframeId keyfram
         MeasuresDepth(map->keyframe(keyframe_id)) && MeasuresDepth(atlas->MapOf(candidate)->keyframe(candidate));
     const auto loop = verifier_.Verify(atlas, places, keyframe_id, candidate, fixed_scale, random);
     if (!loop) continue;
+    if (map != atlas->MapOf(candidate) && !agreement_.Takes(atlas, *loop)) continue;
     StartJoining(atlas, *loop, frame_index);
     return;
   }
@@ -50,6 +52,7 @@ void LoopCloser::StartJoining(Atlas* atlas, const VerifiedLoop& loop, int64_t fr
   bundle_slot_.Cancel();
   loop_ = loop;
   detector_.Forget();
+  agreement_.Forget();
   PoseGraphOptions options = options_.pose_graph;
   options.fixed_scale = loop.fixed_scale;
   GraphProblem problem;

@@ -9,6 +9,7 @@
 #include "loop_closing/essential_graph.h"
 #include "loop_closing/loop_detector.h"
 #include "loop_closing/loop_verifier.h"
+#include "loop_closing/merge_agreement.h"
 #include "loop_closing/place_fuser.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
@@ -20,6 +21,7 @@ namespace kinemap {
 struct LoopCloserOptions {
   LoopDetectorOptions detector;
   LoopVerifierOptions verifier;
+  MergeAgreementOptions agreement;
   EssentialGraphOptions essential_graph;
   PoseGraphOptions pose_graph;
   BundleOptions bundle{5, 5, 1e-5, 0};
@@ -44,6 +46,7 @@ struct LoopEvents {
 /// What a settled loop closer carries from one keyframe to the next.
 struct LoopCloserState {
   std::vector<LoopDetector::Group> candidates;
+  MergeAgreement::State agreement;
   int keyframes_since_loop = 0;
 };
 
@@ -66,9 +69,10 @@ class LoopCloser {
   /// Merges all that is pending, whatever frame it is due.
   LoopEvents Settle(Atlas* atlas);
 
-  LoopCloserState state() const { return {detector_.last(), keyframes_since_}; }
+  LoopCloserState state() const { return {detector_.last(), agreement_.state(), keyframes_since_}; }
   void Restore(LoopCloserState state) {
     detector_.Restore(std::move(state.candidates));
+    agreement_.Restore(state.agreement);
     keyframes_since_ = state.keyframes_since_loop;
   }
 
@@ -86,6 +90,7 @@ class LoopCloser {
   CameraModel camera_;
   LoopDetector detector_;
   LoopVerifier verifier_;
+  MergeAgreement agreement_;
   PlaceFuser fuser_;
   BackgroundSlot<GraphProblem> graph_slot_;
   BackgroundSlot<BundleProblem> bundle_slot_;

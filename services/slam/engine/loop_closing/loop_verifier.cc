@@ -2,6 +2,7 @@
 #include "loop_closing/loop_verifier.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "optimization/sim3_optimizer.h"
@@ -93,6 +94,17 @@ std::vector<LandmarkMatch> LoopVerifier::Project(const Sides& sides, const Simil
                            sides.map.keyframe(target_id), radius_px, kStrictHammingDistance);
 }
 
+double LoopVerifier::Spread(const Keyframe& keyframe, const std::vector<LandmarkMatch>& matches) const {
+  double sum = 0, sum_of_squares = 0;
+  for (const LandmarkMatch& match : matches) {
+    const double x = keyframe.features->keypoints[match.keypoint].pixel_px.x() / camera_.width_px();
+    sum += x;
+    sum_of_squares += x * x;
+  }
+  const double count = static_cast<double>(matches.size());
+  return std::sqrt(std::max(0.0, sum_of_squares / count - sum * sum / (count * count)));
+}
+
 bool LoopVerifier::IsConfirmed(const Sides& sides, const SimilarityTransform& keyframe_from_candidate) const {
   int confirmations = 0;
   for (const KeyframeId id : sides.map.covisibility().Neighbors(sides.keyframe.id, kConfirmingNeighbors)) {
@@ -126,6 +138,7 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   std::vector<LandmarkMatch> matches = Project(sides, fine.first_from_second, keyframe_id, kNarrowRadiusPx);
   if (matches.size() < static_cast<size_t>(options_.min_matches)) return std::nullopt;
   if (!IsConfirmed(sides, fine.first_from_second)) return std::nullopt;
+  if (&map != &candidate_map && Spread(sides.keyframe, matches) < options_.min_spread) return std::nullopt;
   if (&map == &candidate_map &&
       !IsWithinDrift(options_.drift, map, keyframe_id, candidate_id, fine.first_from_second.Inverse(), fixed_scale)) {
     return std::nullopt;

@@ -20,6 +20,8 @@ struct LoopVerifierOptions {
   int min_matches = 40;           ///< after projecting the candidate's surroundings into the keyframe
   int min_neighbor_matches = 25;  ///< the same in a neighbour of the keyframe, which then confirms it
   int min_confirmations = 2;      ///< such neighbours, of the five that share most
+  double min_spread = 0.1;        ///< of the matches of another map across the image (standard deviation, widths): one
+                                  ///< house looks like many
   Sim3RansacOptions ransac;
   DriftBoundOptions drift;
 };
@@ -36,8 +38,8 @@ struct VerifiedLoop {
 
 /// Makes sure that two keyframes show one place: matches by words, a similarity between the two cameras by RANSAC and
 /// optimisation, enough landmarks around the candidate found again in the keyframe and in its neighbours
-/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A), and, within one
-/// map, a way on which so much may have been lost.
+/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A); within one map, a
+/// way on which so much may have been lost, between two, matches over much of the image.
 class LoopVerifier {
  public:
   /// With `fixed_scale` both sides are in the same units.
@@ -52,6 +54,7 @@ class LoopVerifier {
   std::vector<PointPair> Pairs(const Sides& sides, const std::vector<LandmarkMatch>& matches) const;
   std::vector<LandmarkMatch> Project(const Sides& sides, const SimilarityTransform& keyframe_from_candidate,
                                      KeyframeId target_id, double radius_px) const;
+  double Spread(const Keyframe& keyframe, const std::vector<LandmarkMatch>& matches) const;
   bool IsConfirmed(const Sides& sides, const SimilarityTransform& keyframe_from_candidate) const;
 
   LoopVerifierOptions options_;

@@ -106,9 +106,17 @@ bool Relocalizer::TryKeyframe(const SlamMap& map, KeyframeId keyframe_id, const 
   return inliers >= options_.least_inliers;
 }
 
+const BagOfWords& Relocalizer::BagOf(const Frame& frame) {
+  if (HasPlaces() && described_ != frame.features) {
+    bag_ = places_->Describe(*frame.features, frame.labels);
+    described_ = frame.features;
+  }
+  return bag_;
+}
+
 bool Relocalizer::Relocalize(const SlamMap& map, const Eigen::Vector3d& last_center_in_map, int lost_frames,
-                             Frame* frame) const {
-  const BagOfWords bag = HasPlaces() ? places_->Describe(*frame->features, frame->labels) : BagOfWords();
+                             Frame* frame) {
+  const BagOfWords& bag = BagOf(*frame);
   for (const KeyframeId candidate : Candidates(map, bag, last_center_in_map, lost_frames)) {
     if (TryKeyframe(map, candidate, bag, frame)) return true;
   }

@@ -36,9 +36,10 @@ class Relocalizer {
 
   /// True when the frame now has a pose in this map and matches. `lost_frames` counts the attempts since tracking was
   /// lost. The same frame and map give the same pose.
-  bool Relocalize(const SlamMap& map, const Eigen::Vector3d& last_center_in_map, int lost_frames, Frame* frame) const;
+  bool Relocalize(const SlamMap& map, const Eigen::Vector3d& last_center_in_map, int lost_frames, Frame* frame);
 
  private:
+  const BagOfWords& BagOf(const Frame& frame);
   bool HasPlaces() const { return places_ != nullptr && places_->has_vocabulary(); }
   std::vector<KeyframeId> Candidates(const SlamMap& map, const BagOfWords& bag,
                                      const Eigen::Vector3d& last_center_in_map, int lost_frames) const;
@@ -50,6 +51,8 @@ class Relocalizer {
   CameraModel camera_;
   const PlaceIndex* places_;
   FramePoseSolver solver_;
+  FrameFeaturesPtr described_;  // a frame is looked for in map after map, and described once
+  BagOfWords bag_;
 };
 
 }  // namespace kinemap

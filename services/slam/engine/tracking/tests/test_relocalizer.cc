@@ -54,7 +54,7 @@ class Relocalization : public ::testing::Test {
 };
 
 TEST_F(Relocalization, FindsThePlaceHoweverFarItIs) {
-  const Relocalizer relocalizer({}, TestCamera(), &places_);
+  Relocalizer relocalizer({}, TestCamera(), &places_);
   for (const Eigen::Vector3d& center : {Eigen::Vector3d(0.2, 0.3, 0.5), Eigen::Vector3d(100.6, -0.3, 0.5)}) {
     Frame frame = Seen(center);
     ASSERT_TRUE(relocalizer.Relocalize(map_, {0, 0, 0}, 0, &frame));
@@ -64,7 +64,7 @@ TEST_F(Relocalization, FindsThePlaceHoweverFarItIs) {
 }
 
 TEST_F(Relocalization, IsTheSameEveryTime) {
-  const Relocalizer relocalizer({}, TestCamera(), &places_);
+  Relocalizer relocalizer({}, TestCamera(), &places_);
   Frame first = Seen({0.3, 0.2, 0}), second = first;
   ASSERT_TRUE(relocalizer.Relocalize(map_, {0, 0, 0}, 0, &first));
   ASSERT_TRUE(relocalizer.Relocalize(map_, {0, 0, 0}, 0, &second));
@@ -73,7 +73,7 @@ TEST_F(Relocalization, IsTheSameEveryTime) {
 }
 
 TEST_F(Relocalization, KnowsNoPlaceThatIsNotInTheMap) {
-  const Relocalizer relocalizer({}, TestCamera(), &places_);
+  Relocalizer relocalizer({}, TestCamera(), &places_);
   const Scene elsewhere(400, 4, 6, 16, 9);
   Frame frame = elsewhere.Observe(TestCamera(), TestScales(), CameraAt({0, 0, 0}), 77, 0.3);
   EXPECT_FALSE(relocalizer.Relocalize(map_, {0, 0, 0}, 0, &frame));
@@ -88,13 +88,13 @@ TEST_F(Relocalization, TrustsNoLandmarkThatMayHaveDrivenOff) {
     if (map_.PositionInMap(*landmark).x() > 50 || left-- > 0) continue;
     landmark->state = MotionState::kNonMoving;
   }
-  const Relocalizer relocalizer({}, TestCamera(), &places_);
+  Relocalizer relocalizer({}, TestCamera(), &places_);
   Frame frame = Seen({0.2, 0.3, 0.5});
   EXPECT_FALSE(relocalizer.Relocalize(map_, {0, 0, 0}, 0, &frame));
 }
 
 TEST_F(Relocalization, WithoutAVocabularyTriesKeyframesInTurn) {
-  const Relocalizer relocalizer({}, TestCamera(), nullptr);
+  Relocalizer relocalizer({}, TestCamera(), nullptr);
   const Eigen::Vector3d center(100.6, -0.3, 0.5);
   int attempts = 0;
   Frame frame = Seen(center);

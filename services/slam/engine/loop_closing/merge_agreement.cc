@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "loop_closing/merge_agreement.h"
+
+#include <cmath>
+
+namespace kinemap {
+namespace {
+
+/// As the two maps are now.
+SimilarityTransform OtherFromOne(const SlamMap& other, const SlamMap& one, const MergeAgreement::State& proposal) {
+  return other.MapFromAnchor(proposal.matched_id) * proposal.matched_from_keyframe *
+         one.MapFromAnchor(proposal.keyframe_id).Inverse();
+}
+
+}  // namespace
+
+bool MergeAgreement::Agrees(Atlas* atlas, const State& newest) const {
+  if (state_.count == 0) return false;
+  const SlamMap* one = atlas->MapOf(newest.keyframe_id);
+  const SlamMap* other = atlas->MapOf(newest.matched_id);
+  if (atlas->MapOf(state_.keyframe_id) != one || atlas->MapOf(state_.matched_id) != other) return false;
+  const SimilarityTransform before = OtherFromOne(*other, *one, state_), now = OtherFromOne(*other, *one, newest);
+  const Eigen::Vector3d center = one->MapFromKeyframe(newest.keyframe_id).translation;
+  const double off = (before * center - now * center).norm();
+  const double depth = now.scale * one->MedianDepth(newest.keyframe_id);
+  return off <= options_.most_off * depth &&
+         before.rotation.angularDistance(now.rotation) <= options_.most_turned_rad &&
+         std::abs(std::log(before.scale / now.scale)) <= std::log(options_.most_scale_factor);
+}
+
+bool MergeAgreement::Takes(Atlas* atlas, const VerifiedLoop& loop) {
+  State newest{loop.keyframe_id, loop.matched_id, loop.matched_from_keyframe, 1};
+  // A keyframe that recognises several keyframes of the place is still one witness.
+  const int more = newest.keyframe_id == state_.keyframe_id ? 0 : 1;
+  if (Agrees(atlas, newest)) newest.count = state_.count + more;
+  state_ = newest;
+  return state_.count >= options_.agreeing_keyframes;
+}
+
+}  // namespace kinemap
