@@ -33,12 +33,4 @@ Eigen::Matrix3d FundamentalFromMotion(const RigidTransform& second_from_first, c
          second_from_first.rotation.toRotationMatrix() * inverse;
 }
 
-double SquaredEpipolarDistance(const Eigen::Matrix3d& fundamental, const Eigen::Vector2d& pixel_1,
-                               const Eigen::Vector2d& pixel_2) {
-  const Eigen::Vector3d line = fundamental * pixel_1.homogeneous();
-  const double error = line.dot(pixel_2.homogeneous());
-  const double squared_norm = line.head<2>().squaredNorm();
-  return squared_norm > 0 ? error * error / squared_norm : 1e18;
-}
-
 }  // namespace kinemap

@@ -18,8 +18,4 @@ double ParallaxCosine(const Eigen::Vector3d& point, const Eigen::Vector3d& cente
 /// F with pixel_2^T F pixel_1 = 0, for a pair of undistorted cameras with one calibration matrix.
 Eigen::Matrix3d FundamentalFromMotion(const RigidTransform& second_from_first, const Eigen::Matrix3d& intrinsics);
 
-/// Squared distance in pixels of `pixel_2` from the epipolar line of `pixel_1`.
-double SquaredEpipolarDistance(const Eigen::Matrix3d& fundamental, const Eigen::Vector2d& pixel_1,
-                               const Eigen::Vector2d& pixel_2);
-
 }  // namespace kinemap

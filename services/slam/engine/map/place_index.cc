@@ -66,7 +66,7 @@ const BagOfWords* PlaceIndex::bag(KeyframeId id) const {
   return found == slot_of_.end() ? nullptr : &slots_[found->second].bag;
 }
 
-std::vector<PlaceCandidate> PlaceIndex::Ranked(const BagOfWords& bag, const Accept& accept) const {
+std::vector<PlaceCandidate> PlaceIndex::Query(const BagOfWords& bag, const Accept& accept) const {
   std::vector<double> shared(slots_.size(), 0);
   for (const auto& [word, weight] : bag.words) {
     for (const Entry& entry : entries_of_word_[word]) shared[entry.slot] += std::min(weight, entry.weight);
@@ -79,17 +79,12 @@ std::vector<PlaceCandidate> PlaceIndex::Ranked(const BagOfWords& bag, const Acce
   return candidates;
 }
 
-std::vector<PlaceCandidate> PlaceIndex::Query(const BagOfWords& bag, int max_count, const Accept& accept) const {
-  std::vector<PlaceCandidate> candidates = Ranked(bag, accept);
-  if (candidates.size() > static_cast<size_t>(max_count)) candidates.resize(max_count);
-  return candidates;
-}
-
 std::vector<PlaceCandidate> PlaceIndex::QueryGroups(const BagOfWords& bag, int max_count, const Accept& accept,
                                                     const Neighbors& neighbors) const {
   std::map<KeyframeId, double> similarity_of;
-  for (const PlaceCandidate& candidate : Ranked(bag, accept))
+  for (const PlaceCandidate& candidate : Query(bag, accept)) {
     similarity_of[candidate.keyframe_id] = candidate.similarity;
+  }
   std::vector<PlaceCandidate> groups;
   for (const auto& [id, similarity] : similarity_of) {
     PlaceCandidate best{id, similarity};

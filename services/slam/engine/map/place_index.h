@@ -42,7 +42,7 @@ class PlaceIndex {
   const BagOfWords* bag(KeyframeId id) const;
 
   /// Keyframes that share words with the bag and that `accept` lets pass: most similar first, equal ones by id.
-  std::vector<PlaceCandidate> Query(const BagOfWords& bag, int max_count, const Accept& accept) const;
+  std::vector<PlaceCandidate> Query(const BagOfWords& bag, const Accept& accept) const;
 
   /// The same in groups: neighbours show one place, so each keyframe counts with all of its `neighbors` that share
   /// words too; the most similar keyframe stands for its group (Mur-Artal and Tardos 2014, section V). Groups below
@@ -59,7 +59,6 @@ class PlaceIndex {
     KeyframeId id;
     BagOfWords bag;
   };
-  std::vector<PlaceCandidate> Ranked(const BagOfWords& bag, const Accept& accept) const;
 
   std::shared_ptr<const Vocabulary> vocabulary_;
   std::vector<std::vector<Entry>> entries_of_word_;

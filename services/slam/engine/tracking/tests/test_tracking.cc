@@ -220,7 +220,9 @@ TEST_F(Tracker, HoldsThePoseByFewLandmarksWhereItIsExpected) {
                            : scene_.Observe(TestCamera(), TestScales(), CameraAt(center), 1000 + step, 0.3, label);
     const TrackedPose pose = tracker_.Track(&map_, &frame);
     ASSERT_TRUE(pose.tracked) << "step " << step << ": " << pose.reason;
-    if (step >= 3) EXPECT_LT(pose.estimate.inliers, 30);
+    if (step >= 3) {
+      EXPECT_LT(pose.estimate.inliers, 30);
+    }
     EXPECT_LT(CenterError(frame, center), 0.05) << "step " << step;
   }
 }
@@ -241,7 +243,9 @@ TEST_F(Tracker, GoesOnWhereItIsExpectedAfterAShortBlindness) {
     const TrackedPose pose = tracker_.Track(&map_, &frame);
     ASSERT_EQ(pose.tracked, step <= 2 || step >= 7) << "step " << step << ": " << pose.reason;
     EXPECT_FALSE(pose.relocalized);
-    if (pose.tracked) EXPECT_LT(CenterError(frame, center), 0.05);
+    if (pose.tracked) {
+      EXPECT_LT(CenterError(frame, center), 0.05);
+    }
   }
 }
 
