@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from services.evaluation.bench.runs import LEAST_COVERAGE
-from tests.benchmark.slam.engine_pass import EnginePass, PassReport, run_passes
+from tests.benchmark.slam.engine_pass import EnginePass, PassReport
 from tests.benchmark.slam.engine_run import TRACKING
+from tests.benchmark.slam.kept_passes import KeptPasses, run_missing
 
 
 def parser_of(description: str | None) -> argparse.ArgumentParser:
@@ -24,11 +25,13 @@ def add_kitti_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("kitti", type=Path, help="KITTI odometry's folder `sequences`, with `poses` beside it")
 
 
-def run_groups(groups: Mapping[str, Sequence[EnginePass]], jobs: int) -> dict[str, list[PassReport]]:
-    """Run all passes, saying how each went, and give the reports by group."""
+def run_groups(
+    groups: Mapping[str, Sequence[EnginePass]], jobs: int, kept: KeptPasses | None = None
+) -> dict[str, list[PassReport]]:
+    """Run all passes that are not kept, saying how each went, and give the reports by group."""
     passes = [(name, given) for name, of_group in groups.items() for given in of_group]
     reports: dict[str, list[PassReport]] = {name: [] for name in groups}
-    for (name, given), report in zip(passes, run_passes([given for _, given in passes], jobs), strict=True):
+    for (name, given), report in zip(passes, run_missing([given for _, given in passes], jobs, kept), strict=True):
         print(f"{name}, {given.name}: ATE {report.ate_m:.3f} m, coverage {report.coverage:.1%}", flush=True)
         reports[name].append(report)
     return reports

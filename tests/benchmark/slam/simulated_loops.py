@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rounds of 500 m through the simulated town: the three stages side by side, with and without loop closing.
 
-`python -m tests.benchmark.slam.simulated_loops --drives FOLDER [--seeds 1-10] [--kinds static,heavy] [--jobs 2]`
+`python -m tests.benchmark.slam.simulated_loops --drives FOLDER [--seeds 1-10] [--kinds static,heavy] [--jobs 2]
+[--keep FOLDER]`
 renders the drives that are not in the folder yet. Objects and who of them moves are the simulator's own, so that the
 engine alone is judged; `static`: no traffic, cars parked; `heavy`: a third of the image moves. Error after Sim(3)
 alignment; a run that tracked less than 95 % of its frames is lost and counts as the worst.
@@ -12,6 +13,7 @@ from pathlib import Path
 from tests.benchmark.measurements_page import markdown_table, put
 from tests.benchmark.slam.benchmark_passes import is_lost, median_ate_m, metres, parser_of, run_groups
 from tests.benchmark.slam.engine_pass import EnginePass, PassReport
+from tests.benchmark.slam.kept_passes import KeptPasses
 from tests.benchmark.slam.sequence_part import SequencePart
 from tests.benchmark.slam.simulated_drives import add_drive_arguments, simulated_drive
 from tests.benchmark.slam.trajectory_picture import draw_trajectories
@@ -40,6 +42,7 @@ def main() -> None:
     parser = parser_of(__doc__)
     add_drive_arguments(parser, "1-10")
     parser.add_argument("--kinds", default="static,heavy")
+    parser.add_argument("--keep", type=Path, help="folder of finished passes: started again, it goes on from there")
     parser.add_argument("--picture", type=Path, help="PNG of the trajectories beside the truth")
     given = parser.parse_args()
     groups = {}
@@ -51,7 +54,7 @@ def main() -> None:
                     EnginePass((SequencePart(folder),), stage, {"loop_closing": loops}, f"{kind} {stage}, seed {seed}")
                     for seed, folder in folders.items()
                 ]
-    reports = run_groups(groups, given.jobs)
+    reports = run_groups(groups, given.jobs, KeptPasses(given.keep) if given.keep else None)
     rows = [
         row(kind, stage, reports[f"{kind} {stage}"], reports[f"{kind} {stage} without loops"])
         for kind in given.kinds.split(",")
