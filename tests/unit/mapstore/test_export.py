@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from schemas.records import MotionState
+from services.formats.tum import read_tum
 from services.mapstore.export import export_map
 from services.mapstore.export.kitti import trajectory_kitti
 from services.mapstore.export.pcd import POINT, map_pcd, points_of
@@ -37,33 +38,44 @@ def read_pcd(content: bytes) -> np.ndarray:
 
 def test_tum_rows_are_time_position_quaternion() -> None:
     view = view_of(7)
-    first, *_, last = trajectory_tum(view, 1).splitlines()
+    _, first, *_, last = trajectory_tum(view, 1).splitlines()
     assert first == (
         "0.000000000 0.000000000 0.000000000 0.000000000 -0.500000000 0.500000000 -0.500000000 0.500000000"
     )
     assert last.startswith("0.600000000 6.000000000 0.000000000 0.000000000 ")
-    assert [line.split()[0] for line in keyframes_tum(view, 1).splitlines()] == ["0.000000000", "0.500000000"]
+    assert [line.split()[0] for line in keyframes_tum(view, 1).splitlines()] == ["#", "0.000000000", "0.500000000"]
+
+
+def test_tum_says_what_a_length_is(tmp_path: Path) -> None:
+    view = view_of(3)
+    arbitrary = trajectory_tum(replace(view, metric_scale=False), 1)
+    assert arbitrary.startswith("# timestamp_s tx ty tz qx qy qz qw; map_from_camera, lengths in map units: the scale")
+    metric = trajectory_tum(replace(view, metric_scale=True), 1)
+    assert metric.splitlines()[0].endswith("lengths in metres")
+    assert trajectory_tum(replace(view, map_id=2), 1).splitlines()[0].endswith("lengths in units of map 1")
+    (tmp_path / "trajectory.tum").write_text(metric)
+    assert len(read_tum(tmp_path / "trajectory.tum").timestamp_ns) == 3
 
 
 def test_large_times_keep_every_nanosecond() -> None:
     state = MapState()
     state.add_frame(0, replace(tracked(0, 0), timestamp_ns=1_763_827_200_123_456_789))
-    assert trajectory_tum(state.view(), 1).startswith("1763827200.123456789 ")
+    assert trajectory_tum(state.view(), 1).splitlines()[1].startswith("1763827200.123456789 ")
 
 
 def test_frames_without_a_pose_are_left_out() -> None:
     state = MapState()
     state.add_frame(0, waiting(0))
     state.add_frame(1, tracked(1, 1))
-    assert len(trajectory_tum(state.view(), 1).splitlines()) == 1
+    assert len(trajectory_tum(state.view(), 1).splitlines()) == 1 + 1
     assert trajectory_tum(MapState().view(), 0) == trajectory_kitti(MapState().view(), 0) == ""
 
 
 def test_culled_keyframes_stay_in_the_trajectory_only() -> None:
     state = state_of(7)
     state.apply(with_keyframes(landmarks(0, 0, np.empty(0), np.empty((0, 3))), 5, culled=1))
-    assert len(trajectory_tum(state.view(), 1).splitlines()) == 7
-    assert len(keyframes_tum(state.view(), 1).splitlines()) == 1
+    assert len(trajectory_tum(state.view(), 1).splitlines()) == 1 + 7
+    assert len(keyframes_tum(state.view(), 1).splitlines()) == 1 + 1
 
 
 def test_kitti_rows_begin_with_the_identity_and_look_along_z() -> None:
@@ -126,9 +138,9 @@ def test_of_maps_that_were_never_joined_the_longest_is_exported(tmp_path: Path) 
         store.put(sequence, replace(frame, map_id=map_id), replace(update, keyframe_map_id=keyframe_map_id), NO_DENSITY)
     store.close()
     (trajectory, _) = export_map(tmp_path / "map.sqlite", tmp_path, ["tum"])
-    assert len(trajectory.read_text().splitlines()) == 5
+    assert len(trajectory.read_text().splitlines()) == 1 + 5
     (trajectory, _) = export_map(tmp_path / "map.sqlite", tmp_path, ["tum"], map_id=2)
-    assert len(trajectory.read_text().splitlines()) == 3
+    assert len(trajectory.read_text().splitlines()) == 1 + 3
 
 
 def test_a_format_nobody_knows_is_refused_before_anything_is_written(tmp_path: Path) -> None:

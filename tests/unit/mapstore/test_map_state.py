@@ -157,12 +157,12 @@ def test_frames_go_into_the_map_that_takes_theirs_over() -> None:
     state.add_frame(3, replace(tracked(3, 3), map_id=2))
     state.apply(replace(later, keyframe_map_id=np.array([2])))
     assert state.view().frame_map_ids().tolist() == [1, 1, 1, 2]
-    assert len(trajectory_tum(state.view(), 1).splitlines()) == 3
+    assert len(trajectory_tum(state.view(), 1).splitlines()) == 1 + 3
     state.apply(with_keyframes(MapUpdate(4 * FRAME_NS, map_id=1), 3, y=7.0))
     view = state.view()
     assert view.frame_map_ids().tolist() == [1, 1, 1, 1]
     assert view.final_poses()[3, :2].tolist() == [3.0, 7.0]
-    assert len(trajectory_tum(view, 1).splitlines()) == 4
+    assert len(trajectory_tum(view, 1).splitlines()) == 1 + 4
 
 
 def test_a_frame_without_a_known_keyframe_stays_in_the_map_it_was_reported_in() -> None:
