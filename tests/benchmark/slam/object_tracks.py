@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well objects are placed in the map: simulated drives, the simulator's own masks and flags, against its truth.
 
-python -m tests.benchmark.slam.object_tracks [--world town] [--seeds 1] [--frames 150] [--traffic 0.5]
+python -m tests.benchmark.slam.object_tracks [--world town] [--seeds 1] [--frames 150] [--traffic 0.5] [--write]
 """
 
 import argparse
@@ -18,6 +18,7 @@ from services.simulator.drive import Drive
 from services.simulator.frame import SimulatedFrame, SimulatedInstance
 from services.simulator.options import DriveOptions
 from services.slam.engine_adapter import EngineSettings, SlamEngine
+from tests.benchmark.measurements_page import put
 
 Array = npt.NDArray[np.float64]
 
@@ -145,7 +146,9 @@ def main() -> None:
     parser.add_argument("--traffic", type=float, default=0.5)
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--height", type=int, default=192)
+    parser.add_argument("--write", action="store_true", help="put the tables on docs/measurements.md")
     arguments = parser.parse_args()
+    tables = []
     for title, use_depth in (("one camera of known height", False), ("depth images", True)):
         results = [
             run(
@@ -161,7 +164,12 @@ def main() -> None:
             )
             for seed in range(1, arguments.seeds + 1)
         ]
-        print(table(title, results), "\n")
+        tables.append(table(title, results))
+        print(tables[-1], "\n")
+    if arguments.write:
+        command = f"python -m tests.benchmark.slam.object_tracks --world {arguments.world} --seeds {arguments.seeds}"
+        command += f" --frames {arguments.frames} --traffic {arguments.traffic} --write"
+        put("object-tracks", command, "\n\n".join(tables))
 
 
 if __name__ == "__main__":

@@ -71,7 +71,7 @@ class BundleSolver {
     if (cancelled != nullptr) options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem_, &summary);
-    if (robust_) bundle_.robust_cost = summary.final_cost;
+    if (robust_) bundle_.robust_cost = summary.IsSolutionUsable() ? summary.final_cost : std::nan("");
     bundle_.right_shift_px = *right_shift_px_;
     bundle_.radial = *radial_;
     for (size_t i = 0; i < bundle_.cameras.size(); ++i) {

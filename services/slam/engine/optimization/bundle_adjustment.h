@@ -39,7 +39,8 @@ struct BundleProblem {
   std::vector<BundleObservation> observations;
   double right_shift_px = 0;  ///< by which the right image's columns are too high
   double radial = 0;          ///< k with pixel = Project(point * (1 + k r^2)), r = distance from the axis at depth 1
-  double robust_cost = 0;     ///< half the sum of Huber's losses and priors when the robust iterations ended
+  /// Half the sum of Huber's losses and priors when the robust iterations ended; not a number: they failed.
+  double robust_cost = 0;
 };
 
 struct BundleOptions {
