@@ -58,6 +58,8 @@ class PassReport:
     ate_se3_m: float
     online_ate_m: float
     scale: float
+    metric: bool
+    """whether the engine held its lengths for metres at the last frame"""
     maps: int
     keyframes: int
     culled: int
@@ -113,6 +115,7 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         ate_se3_m=errors_m(centers, truth[indices], Alignment.SE3)[0],
         online_ate_m=errors_m(told_centers, truth[told], Alignment.SIM3)[0],
         scale=scale,
+        metric=run.results[-1].metric_scale,
         maps=len(set(run.map_of_keyframe.values())),
         keyframes=len(run.keyframes),
         culled=len(run.culled),
