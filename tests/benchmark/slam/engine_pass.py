@@ -58,8 +58,6 @@ class PassReport:
     ate_se3_m: float
     online_ate_m: float
     scale: float
-    metric: bool
-    """whether the engine held its lengths for metres at the last frame"""
     maps: int
     keyframes: int
     culled: int
@@ -82,6 +80,8 @@ class PassReport:
     """(N, 3), aligned with the truth"""
     true_centers: Array
     """(frames, 3), m"""
+    metric: bool = False
+    """whether the engine held its lengths for metres at the last frame"""
 
     def ms(self, percent: float) -> float:
         """Percentile of the wall-clock time of a frame."""
