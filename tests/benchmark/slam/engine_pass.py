@@ -82,6 +82,8 @@ class PassReport:
     """(frames, 3), m"""
     metric: bool = False
     """whether the engine held its lengths for metres at the last frame"""
+    loops_closed: int = 0
+    """frames at which a loop's correction was merged; one that only the end of the pass merges is not among them"""
 
     def ms(self, percent: float) -> float:
         """Percentile of the wall-clock time of a frame."""
@@ -116,6 +118,7 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         online_ate_m=errors_m(told_centers, truth[told], Alignment.SIM3)[0],
         scale=scale,
         metric=run.results[-1].metric_scale,
+        loops_closed=sum(result.loop_closed for result in run.results),
         maps=len(set(run.map_of_keyframe.values())),
         keyframes=len(run.keyframes),
         culled=len(run.culled),

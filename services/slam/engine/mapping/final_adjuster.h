@@ -12,7 +12,7 @@ namespace kinemap {
 struct FinalAdjusterOptions {
   int keyframes = 1000;  ///< newest, that move
   /// Errors that a local window leaves behind bend the map only little a frame, so the end needs a finer tolerance.
-  BundleOptions bundle{20, 20, 1e-8, 0.01};
+  BundleOptions bundle{60, 20, 1e-9, 0.01};
   /// Part of the cost that what calibration left must explain to be believed. On KITTI it explains more than a
   /// hundredth. Small errors of the features' places, which grow with the distance from the axis too, explain up to a
   /// thousandth of a perfect camera's cost, by a distortion that is not there and bends the map.

@@ -62,6 +62,8 @@ class BundleSolver {
     if (free_cameras_ == 0) return;
     ceres::Solver::Options options;
     options.linear_solver_type = free_cameras_ > kMostDenseCameras ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
+    // Not SuiteSparse: its BLAS has threads of its own, with whose number the last bits would change.
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.linear_solver_ordering = ordering_;
     options.max_num_iterations = robust_ ? options_.robust_iterations : options_.final_iterations;
     options.num_threads = 1;

@@ -36,6 +36,7 @@ void SolvePoseGraph(const PoseGraphOptions& options, PoseGraph* graph) {
   }
   ceres::Solver::Options solver_options;
   solver_options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver_options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // as in bundle_adjustment.cc
   solver_options.max_num_iterations = options.iterations;
   solver_options.function_tolerance = options.tolerance;
   solver_options.num_threads = 1;
