@@ -14,3 +14,12 @@ def shared_data() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no recordings at {folder}; set KINEMAP_DATA to a folder that holds kitti/sequences/03")
     return folder
+
+
+@pytest.fixture(scope="session")
+def golden_outputs() -> Path:
+    """The folder of what reference implementations computed; the test skips where there is none."""
+    folder = Path(os.environ.get("KINEMAP_GOLDEN", Path(__file__).resolve().parent.parent.parent / "shared" / "golden"))
+    if not folder.is_dir():
+        pytest.skip(f"no golden outputs at {folder}; set KINEMAP_GOLDEN to a folder that holds solov2_light_r18")
+    return folder

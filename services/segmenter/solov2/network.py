@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole network."""
+
+from torch import Tensor, nn
+
+from services.segmenter.solov2.fpn import Fpn
+from services.segmenter.solov2.head import HeadOutput, SoloV2Head
+from services.segmenter.solov2.resnet import ResNet
+from services.segmenter.solov2.variants import Variant
+
+
+class SoloV2(nn.Module):
+    """From images to per-cell categories, kernels and the mask features they work on."""
+
+    def __init__(self, variant: Variant, categories: int) -> None:
+        super().__init__()
+        self.variant = variant
+        self.backbone = ResNet(variant.depth)
+        self.neck = Fpn(self.backbone.out_channels)
+        self.mask_head = SoloV2Head(variant, categories)
+
+    def forward(self, images: Tensor) -> HeadOutput:
+        """(N, 3, H, W), normalised as preprocessing.py does it; H and W multiples of 32."""
+        output: HeadOutput = self.mask_head(self.neck(self.backbone(images)))
+        return output
