@@ -20,6 +20,7 @@ from services.cli.status import status
 from services.cli.thesis.app import thesis_app
 from services.cli.train.app import train_app
 from services.cli.up import up
+from services.cli.weights.app import weights_app
 from services.runtime.errors import KinemapError
 
 INTERRUPTED = 130
@@ -38,6 +39,7 @@ app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(thesis_app, name="thesis")
 app.add_typer(dataset_app, name="dataset")
 app.add_typer(train_app, name="train")
+app.add_typer(weights_app, name="weights")
 app.command()(doctor)
 
 

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`kinemap weights`: the networks that find objects."""
