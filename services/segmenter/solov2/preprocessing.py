@@ -36,10 +36,15 @@ def prepare(image: npt.NDArray[np.uint8], box: tuple[int, int]) -> NetworkInput:
     original = (image.shape[0], image.shape[1])
     height, width = fitted_hw(*original, box)
     resized = cv2.resize(image, (width, height), interpolation=cv2.INTER_LINEAR)
-    rgb = resized[..., ::-1].astype(np.float32)
     padded = np.zeros((1, 3, _rounded_up(height), _rounded_up(width)), np.float32)
-    padded[0, :, :height, :width] = ((rgb - _MEAN_RGB) / _STD_RGB).transpose(2, 0, 1)
+    padded[0, :, :height, :width] = normalized(np.asarray(resized, np.uint8))
     return NetworkInput(padded, (height, width), original)
+
+
+def normalized(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """(H, W, 3) BGR to (3, H, W) RGB without ImageNet's mean and in units of its deviation."""
+    rgb = image[..., ::-1].astype(np.float32)
+    return np.ascontiguousarray(((rgb - _MEAN_RGB) / _STD_RGB).transpose(2, 0, 1))
 
 
 def _rounded_up(size_px: int) -> int:

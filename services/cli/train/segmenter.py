@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`kinemap train segmenter`: SOLOv2 on the user's own data or on simulated scenes."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from services.cli.train.training_data import parse_training_data, read_samples
+from services.runtime.config.segmenter import SegmenterConfig
+from services.runtime.errors import InputError
+
+if TYPE_CHECKING:
+    import torch
+
+    from services.cli.train.segmenter_validation import Validation
+    from services.segmenter.training.trainer import StepReport, Trainer
+
+MODEL_NAME, CURVES_NAME = "model.safetensors", "curves.png"
+_MULTIPLE_PX = 32
+
+
+def segmenter(
+    data: Annotated[
+        list[str],
+        typer.Argument(metavar="DATA...", help="Folders of `kinemap train scenes`, FILE.json or FILE.json=IMAGES."),
+    ],
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder of the result; a begun training goes on in it.")],
+    validate: Annotated[
+        list[str] | None, typer.Option(metavar="DATA", help="Judge by these at every save; may be repeated.")
+    ] = None,
+    category: Annotated[
+        list[str] | None, typer.Option(help="What to learn; may be repeated (default: segmenter.categories).")
+    ] = None,
+    variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-light_r18",
+    start_from: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Begin with these weights (same variant and categories).")
+    ] = None,
+    size: Annotated[
+        str, typer.Option(metavar="WIDTHxHEIGHT", help="Of a training image, multiples of 32.")
+    ] = "832x288",
+    steps: Annotated[int, typer.Option(min=1, help="Batches to learn from.")] = 20_000,
+    batch: Annotated[int, typer.Option(min=1, help="Images a batch.")] = 16,
+    rate: Annotated[float, typer.Option(min=1e-7, max=1.0, help="The highest learning rate.")] = 4e-4,
+    save_every: Annotated[int, typer.Option(min=1, help="Steps between two saves.")] = 1000,
+    workers: Annotated[int, typer.Option(min=0, help="Processes that prepare images (0: none beside this one).")] = 2,
+    device: Annotated[str, typer.Option(help="cuda, cpu, or auto.")] = "auto",
+    seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn by chance.")] = 0,
+) -> None:
+    """Learn to find objects; OUT gets model.safetensors (16 bits), curves.png and what a resumption needs.
+
+    Interrupted or killed, the same command goes on from the last save.
+    """
+    from services.cli.simulate_seeds import parse_size
+    from services.cli.train.segmenter_validation import Validation
+    from services.segmenter.solov2.variants import VARIANTS
+    from services.segmenter.training.trainer import Trainer, TrainingOptions
+
+    if variant not in VARIANTS:
+        raise InputError(f"--variant {variant}: expected one of {', '.join(VARIANTS)}")
+    width, height = parse_size(size)
+    if width % _MULTIPLE_PX or height % _MULTIPLE_PX:
+        raise InputError(f"--size {size}: expected multiples of {_MULTIPLE_PX}, such as 832x288")
+    categories = tuple(category or SegmenterConfig.model_fields["categories"].get_default())
+    samples = read_samples([parse_training_data(text) for text in data], categories)
+    validation = Validation([parse_training_data(text) for text in validate or ()], categories, VARIANTS[variant])
+    out.mkdir(parents=True, exist_ok=True)
+    options = TrainingOptions(
+        variant=variant,
+        categories=categories,
+        size=(width, height),
+        steps=steps,
+        batch=batch,
+        peak_learning_rate=rate,
+        warm_up=min(1000, max(1, steps // 10)),
+        seed=seed,
+    )
+    weights = _weights(start_from, variant, categories)
+    trainer = Trainer(options, samples, out, _device(device), workers, weights)
+    _train(trainer, validation, out, save_every)
+    print(out / MODEL_NAME)
+
+
+def _device(name: str) -> "torch.device":
+    import torch
+
+    if name == "auto":
+        name = "cuda" if torch.cuda.is_available() else "cpu"
+    try:
+        device = torch.device(name)
+        torch.zeros(1, device=device)
+    except (RuntimeError, AssertionError) as error:
+        raise InputError(f"--device {name}: not to be had ({str(error).splitlines()[0]})") from error
+    return device
+
+
+def _weights(path: Path | None, variant: str, categories: tuple[str, ...]) -> "dict[str, torch.Tensor] | None":
+    if path is None:
+        return None
+    from services.segmenter.weights.model_file import load_network
+
+    network, description = load_network(path)
+    if (description.variant, description.categories) != (variant, categories):
+        raise InputError(
+            f"--start-from {path}: {description.variant} of {len(description.categories)} categories, expected "
+            f"{variant} of {', '.join(categories)}"
+        )
+    return network.state_dict()
+
+
+def _train(trainer: "Trainer", validation: "Validation", out: Path, save_every: int) -> None:
+    from services.segmenter.training.curves import draw_curves
+
+    steps = trainer.options.steps
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task("training", total=steps, completed=trainer.step)
+
+        def report(step: "StepReport") -> None:
+            for name, value in (("category loss", step.category_loss), ("mask loss", step.mask_loss)):
+                trainer.curves.setdefault(name, []).append([step.step, value])
+            progress.update(
+                task,
+                completed=step.step,
+                description=f"training: category {step.category_loss:.3f}, mask {step.mask_loss:.3f}",
+            )
+
+        while trainer.step < steps:
+            trainer.run(min(steps, trainer.step + save_every), report)
+            _save(trainer, out)
+            said = f"step {trainer.step} of {steps}"
+            for name, value in validation.judge(trainer).items():
+                trainer.curves.setdefault(name, []).append([trainer.step, value])
+                said += f", {name} {value:.3f}"
+            console.print(said, highlight=False)
+            draw_curves(trainer.curves, out / CURVES_NAME)
+
+
+def _save(trainer: "Trainer", out: Path) -> None:
+    from services.segmenter.solov2.variants import VARIANTS
+    from services.segmenter.weights.model_file import ModelDescription, save_model
+
+    options = trainer.options
+    description = ModelDescription(
+        options.variant,
+        options.categories,
+        VARIANTS[options.variant].test_size,
+        f"kinemap train segmenter, step {trainer.step} of {options.steps}, {len(trainer.samples)} images",
+    )
+    save_model(out / MODEL_NAME, description, trainer.averaged_network().state_dict(), half=True)

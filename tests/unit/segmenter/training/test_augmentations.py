@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+from services.segmenter.training.batches import Augmentations
+from services.segmenter.training.copy_paste import CopyPaste
+from services.segmenter.training.geometric_augmentation import Mirror, RandomSection
+from services.segmenter.training.photometric_augmentation import Photometric
+from services.segmenter.training.sample import Sample
+from tests.unit.segmenter.training.painted_samples import BLUE, RED, painted_sample
+
+
+def _agreement(sample: Sample) -> float:
+    """Share of the masks' pixels that have the colour of their label."""
+    right = total = 0
+    for mask, label in zip(sample.masks, sample.labels, strict=True):
+        distance = np.abs(sample.image[mask > 0].astype(int) - (BLUE, RED)[label]).max(axis=1)
+        right, total = right + int((distance < 30).sum()), total + len(distance)
+    return right / total
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_masks_move_with_the_image(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    sample = RandomSection((128, 96))(Mirror()(painted_sample(seed), random), random)
+    assert sample.image.shape == (96, 128, 3)
+    assert sample.masks.shape[1:] == (96, 128)
+    assert len(sample.masks) == len(sample.labels)
+    if len(sample.labels):
+        assert _agreement(sample) > 0.9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_pasted_covers_what_was_there(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    before, other = painted_sample(seed), painted_sample(seed + 100, (200, 100))
+    after = CopyPaste(share=1.0).paste(before, other, random)
+    assert after.masks.sum(0).max() == 1
+    assert _agreement(after) > 0.9
+    assert len(after.labels) >= 1
+    np.testing.assert_array_equal(before.masks, painted_sample(seed).masks)
+
+
+def test_colours_change_and_masks_do_not() -> None:
+    sample = painted_sample(1)
+    images = [Photometric()(sample, np.random.default_rng(seed)) for seed in range(30)]
+    assert all(changed.masks is sample.masks for changed in images)
+    differences = [np.abs(changed.image.astype(int) - sample.image).mean() for changed in images]
+    assert np.median(differences) > 10
+    assert all(changed.image.dtype == np.uint8 for changed in images)
+
+
+def test_the_same_chance_gives_the_same_bytes() -> None:
+    one, two = (
+        Augmentations((128, 96)).apply(painted_sample(3), painted_sample(4), np.random.default_rng(9)) for _ in range(2)
+    )
+    np.testing.assert_array_equal(one.image, two.image)
+    np.testing.assert_array_equal(one.masks, two.masks)
