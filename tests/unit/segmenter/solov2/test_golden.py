@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 from torch import Tensor
+from torch.nn.functional import max_pool2d
 
 from services.segmenter.solov2.head import HeadOutput
 from services.segmenter.solov2.instances import instances_of
@@ -57,8 +58,15 @@ def test_pyramid_and_head_agree(reference: Reference, level: int) -> None:
     means = reference.levels[level].mean((2, 3))
     np.testing.assert_allclose(means, reference.arrays[f"fpn{level}_mean"], atol=1e-4, rtol=1e-4)
     np.testing.assert_allclose(reference.output.kernels[level], reference.arrays[f"kernel{level}"], **TOLERANCE)
-    scores = points_nms(reference.output.categories[level].sigmoid()).permute(0, 2, 3, 1)
-    np.testing.assert_allclose(scores, reference.arrays[f"cls{level}"], **TOLERANCE)
+    scores = reference.output.categories[level].sigmoid()
+    kept = points_nms(scores).permute(0, 2, 3, 1).numpy()
+    differs = ~np.isclose(kept, reference.arrays[f"cls{level}"], **TOLERANCE)
+    # of two neighbours that are equally sure, the last bit of a sum decides, and with it the number of threads
+    largest = max_pool2d(scores, 2, stride=1, padding=1)[:, :, :-1, :-1].permute(0, 2, 3, 1).numpy()
+    around = max_pool2d(scores, 3, stride=1, padding=1).permute(0, 2, 3, 1).numpy()
+    raw = scores.permute(0, 2, 3, 1).numpy()
+    assert differs.sum() <= 4
+    assert (np.minimum(abs(largest - raw), abs(around - raw))[differs] < 1e-5).all()
 
 
 def test_mask_features_agree(reference: Reference) -> None:
