@@ -64,21 +64,25 @@ def main() -> None:
     parser = parser_of(__doc__)
     add_drive_arguments(parser, "1-10")
     parser.add_argument("--kinds", default="static,heavy")
+    parser.add_argument("--stages", default=",".join(STAGES), help="base must be among them: the others are compared")
+    parser.add_argument("--only-with-loops", action="store_true", help="leave out the passes without loop closing")
     parser.add_argument("--keep", type=Path, help="folder of finished passes: started again, it goes on from there")
     parser.add_argument("--picture", type=Path, help="PNG of the trajectories beside the truth")
     given = parser.parse_args()
+    stages = given.stages.split(",")
     groups = {}
     for kind in given.kinds.split(","):
         folders = {seed: simulated_drive(kind, seed, given.drives) for seed in given.seeds}
-        for stage in STAGES:
-            for loops in (1, 0) if stage == JUDGED else (1,):
+        for stage in stages:
+            for loops in (1, 0) if stage == JUDGED and not given.only_with_loops else (1,):
                 groups[f"{kind} {stage}{'' if loops else ' without loops'}"] = [
                     EnginePass((SequencePart(folder),), stage, {"loop_closing": loops}, f"{kind} {stage}, seed {seed}")
                     for seed, folder in folders.items()
                 ]
     reports = run_groups(groups, given.jobs, KeptPasses(given.keep) if given.keep else None)
-    rows = [row(kind, stage, reports) for kind in given.kinds.split(",") for stage in STAGES]
-    command = f"python -m tests.benchmark.slam.simulated_loops --kinds {given.kinds} ({len(given.seeds)} seeds)"
+    rows = [row(kind, stage, reports) for kind in given.kinds.split(",") for stage in stages]
+    command = f"python -m tests.benchmark.slam.simulated_loops --kinds {given.kinds} --stages {given.stages}"
+    command += f"{' --only-with-loops' if given.only_with_loops else ''} ({len(given.seeds)} seeds)"
     put("slam-simulated-loops", command, markdown_table(HEADER, rows))
     if given.picture is not None:
         drawn = [report for name, of_name in reports.items() if "without" not in name for report in of_name]
