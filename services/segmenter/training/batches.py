@@ -60,13 +60,20 @@ class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
         self._augmentations = augmentations
         self._variant = variant
         self._seed = seed
+        # kept, since of a large data set it takes milliseconds to draw; plain, so that workers can be sent it
+        self._epoch, self._order = -1, np.zeros(0, np.int64)
+
+    def _number_of(self, draw: int) -> int:
+        """Every epoch in another order, each sample once in it."""
+        epoch, place = divmod(draw, len(self._samples))
+        if epoch != self._epoch:
+            self._epoch = epoch
+            self._order = np.random.default_rng((self._seed, epoch, 0)).permutation(len(self._samples))
+        return int(self._order[place])
 
     def __getitem__(self, draw: int) -> tuple[Tensor, Targets]:
         random = np.random.default_rng((self._seed, draw))
-        # every epoch in another order, each sample once in it
-        epoch, place = divmod(draw, len(self._samples))
-        order = np.random.default_rng((self._seed, epoch, 0)).permutation(len(self._samples))
-        sample = self._samples[int(order[place])]
+        sample = self._samples[self._number_of(draw)]
         other = self._samples[int(random.integers(len(self._samples)))]
         sample = self._augmentations.apply(sample, other, random)
         return torch.from_numpy(normalized(sample.image)), assign(sample, self._variant)

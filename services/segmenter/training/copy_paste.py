@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from services.segmenter.training.geometric_augmentation import Mirror, resized
+from services.segmenter.training.geometric_augmentation import Mirror, placed, resized
 from services.segmenter.training.sample import Sample
 
 
@@ -48,20 +48,6 @@ class CopyPaste:
         scaled = resized(
             sample, max(1, round(sample.image.shape[1] * factor)), max(1, round(sample.image.shape[0] * factor))
         )
-        image = np.zeros((height, width, 3), np.uint8)
-        masks = np.zeros((len(scaled.masks), height, width), np.uint8)
         shift_x = int(random.integers(-width // 4, width // 4 + 1)) + (width - scaled.image.shape[1]) // 2
         shift_y = int(random.integers(-height // 8, height // 8 + 1)) + (height - scaled.image.shape[0]) // 2
-        to_x, to_y = max(0, shift_x), max(0, shift_y)
-        from_x, from_y = max(0, -shift_x), max(0, -shift_y)
-        columns = min(width - to_x, scaled.image.shape[1] - from_x)
-        rows = min(height - to_y, scaled.image.shape[0] - from_y)
-        if columns > 0 and rows > 0:
-            here, there = (
-                np.s_[to_y : to_y + rows, to_x : to_x + columns],
-                np.s_[from_y : from_y + rows, from_x : from_x + columns],
-            )
-            image[here] = scaled.image[there]
-            for target, mask in zip(masks, scaled.masks, strict=True):
-                target[here] = mask[there]
-        return Sample(image, masks, sample.labels)
+        return placed(scaled, (width, height), shift_x, shift_y)

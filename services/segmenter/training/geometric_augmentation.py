@@ -19,6 +19,21 @@ def resized(sample: Sample, width: int, height: int) -> Sample:
     return Sample(np.asarray(image, np.uint8), masks, sample.labels)
 
 
+def placed(sample: Sample, size: tuple[int, int], x: int, y: int) -> Sample:
+    """The sample with its upper left corner at (x, y) of an image of `size` (width, height); black where it is not."""
+    width, height = size
+    to_x, to_y, from_x, from_y = max(0, x), max(0, y), max(0, -x), max(0, -y)
+    columns = max(0, min(width - to_x, sample.image.shape[1] - from_x))
+    rows = max(0, min(height - to_y, sample.image.shape[0] - from_y))
+    here = np.s_[to_y : to_y + rows, to_x : to_x + columns]
+    there = np.s_[from_y : from_y + rows, from_x : from_x + columns]
+    image = np.zeros((height, width, 3), np.uint8)
+    masks = np.zeros((len(sample.masks), height, width), np.uint8)
+    image[here] = sample.image[there]
+    masks[:, *here] = sample.masks[:, *there]
+    return Sample(image, masks, sample.labels)
+
+
 @dataclass(frozen=True)
 class Mirror:
     """Left and right change places in half of the samples."""
@@ -59,9 +74,4 @@ class RandomSection:
         scaled = resized(sample, new_width, new_height)
         x = round(random.random() * max(0, new_width - self.size[0]))
         y = round(random.random() * max(0, new_height - self.size[1]))
-        columns, rows = min(self.size[0], new_width - x), min(self.size[1], new_height - y)
-        image = np.zeros((self.size[1], self.size[0], 3), np.uint8)
-        masks = np.zeros((len(scaled.masks), self.size[1], self.size[0]), np.uint8)
-        image[:rows, :columns] = scaled.image[y : y + rows, x : x + columns]
-        masks[:, :rows, :columns] = scaled.masks[:, y : y + rows, x : x + columns]
-        return Sample(image, masks, sample.labels).with_visible_instances(self.least_px)
+        return placed(scaled, self.size, -x, -y).with_visible_instances(self.least_px)
