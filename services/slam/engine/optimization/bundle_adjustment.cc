@@ -1,172 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optimization/bundle_adjustment.h"
 
-#include <ceres/iteration_callback.h>
-#include <ceres/loss_function.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
-
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
 
+#include "optimization/bundle_equations.h"
 #include "optimization/radial_projection.h"
-#include "optimization/reprojection_cost.h"
 
 namespace kinemap {
 namespace {
 
-constexpr double kOutlierBound = 5.991;        // 95 % of chi-squared, two degrees of freedom
-constexpr double kStereoOutlierBound = 7.815;  // three
+constexpr double kFirstRadius = 1e4;
+constexpr double kLeastRadius = 1e-32;
+constexpr double kLeastGain = 1e-3;
 
-// A dense reduced system grows with the cube of the cameras; that of a whole map is mostly empty.
-constexpr int kMostDenseCameras = 60;
-
-using PoseBlock = std::array<double, kPoseSize>;
-
-class StopWhenCancelled : public ceres::IterationCallback {
- public:
-  explicit StopWhenCancelled(const std::atomic<bool>* cancelled) : cancelled_(cancelled) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return *cancelled_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::atomic<bool>* cancelled_;
-};
-
-/// One round of minimisation, over all observations that are no outliers.
-class BundleSolver {
- public:
-  BundleSolver(const CameraModel& camera, const BundleOptions& options, bool robust, BundleProblem* bundle)
-      : camera_(camera),
-        options_(options),
-        robust_(robust),
-        bundle_(*bundle),
-        poses_(bundle->cameras.size() + 1),
-        camera_used_(bundle->cameras.size(), false),
-        point_used_(bundle->points.size(), false),
-        problem_(ProblemOptions()) {
-    for (size_t i = 0; i < bundle_.cameras.size(); ++i) WritePose(bundle_.cameras[i].camera_from_map, poses_[i].data());
-    *right_shift_px_ = bundle_.right_shift_px;
-    *radial_ = bundle_.radial;
-    for (const BundleObservation& observation : bundle_.observations) {
-      if (!observation.outlier) AddObservation(observation);
-    }
-    AddPriors();
-  }
-
-  void Solve(const std::atomic<bool>* cancelled) {
-    if (free_cameras_ == 0) return;
-    ceres::Solver::Options options;
-    options.linear_solver_type = free_cameras_ > kMostDenseCameras ? ceres::SPARSE_SCHUR : ceres::DENSE_SCHUR;
-    // Not SuiteSparse: its BLAS has threads of its own, with whose number the last bits would change.
-    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-    options.linear_solver_ordering = ordering_;
-    options.max_num_iterations = robust_ ? options_.robust_iterations : options_.final_iterations;
-    options.num_threads = 1;
-    options.function_tolerance = options_.tolerance;
-    options.logging_type = ceres::SILENT;
-    StopWhenCancelled stop(cancelled);
-    if (cancelled != nullptr) options.callbacks.push_back(&stop);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem_, &summary);
-    if (robust_) bundle_.robust_cost = summary.IsSolutionUsable() ? summary.final_cost : std::nan("");
-    bundle_.right_shift_px = *right_shift_px_;
-    bundle_.radial = *radial_;
-    for (size_t i = 0; i < bundle_.cameras.size(); ++i) {
-      if (!bundle_.cameras[i].fixed) bundle_.cameras[i].camera_from_map = ReadPose(poses_[i].data());
-    }
-  }
-
- private:
-  static ceres::Problem::Options ProblemOptions() {
-    ceres::Problem::Options options;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.disable_all_safety_checks = true;
-    return options;
-  }
-
-  bool CalibratesToo() const { return options_.radial_sigma > 0; }
-
-  void AddObservation(const BundleObservation& observation) {
-    double* pose = poses_[observation.camera].data();
-    double* point = bundle_.points[observation.point].position_in_map.data();
-    const double inverse_sigma = std::sqrt(observation.inverse_variance);
-    if (std::isnan(observation.right_x_px)) {
-      ceres::LossFunction* loss = robust_ ? &huber_ : nullptr;
-      if (CalibratesToo()) {
-        problem_.AddResidualBlock(new RadialReprojectionCost<2>(camera_, observation.pixel_px, inverse_sigma), loss,
-                                  pose, point, radial_);
-      } else {
-        problem_.AddResidualBlock(new ReprojectionCost<2>(camera_, observation.pixel_px, inverse_sigma), loss, pose,
-                                  point);
-      }
-    } else {
-      ceres::LossFunction* loss = robust_ ? &stereo_huber_ : nullptr;
-      const Eigen::Vector3d observed_px(observation.pixel_px.x(), observation.pixel_px.y(), observation.right_x_px);
-      if (CalibratesToo()) {
-        problem_.AddResidualBlock(new RadialReprojectionCost<3>(camera_, observed_px, inverse_sigma), loss, pose, point,
-                                  radial_, right_shift_px_);
-        shifts_right_image_ = true;
-      } else {
-        problem_.AddResidualBlock(new ReprojectionCost<3>(camera_, observed_px, inverse_sigma), loss, pose, point);
+/// One round of minimisation over all observations that are no outliers, by Levenberg's and Marquardt's method with
+/// Nielsen's update of the damping (Madsen, Nielsen and Tingleff, "Methods for non-linear least squares problems",
+/// 2004, section 3.2). Returns the cost at its end; not a number: there was none to begin with.
+double Minimize(const CameraModel& camera, const BundleOptions& options, bool robust, BundleProblem* problem,
+                const std::atomic<bool>* cancelled) {
+  BundleEquations equations(camera, options, robust, *problem);
+  if (!equations.HasUnknownCameras()) return 0;
+  BundleState state(*problem);
+  double cost = equations.Linearize(state);
+  if (!std::isfinite(cost)) return std::nan("");
+  double radius = kFirstRadius, shrink = 2;
+  BundleStep step;
+  const int iterations = robust ? options.robust_iterations : options.final_iterations;
+  for (int i = 0; i < iterations && radius > kLeastRadius; ++i) {
+    if (cancelled != nullptr && *cancelled) break;
+    double gain = 0;
+    if (equations.Solve(1 / radius, &step)) {
+      BundleState moved = equations.Moved(state, step);
+      const double moved_cost = equations.Cost(moved), decrease = cost - moved_cost;
+      gain = decrease / step.expected_decrease;
+      if (gain > kLeastGain) state = std::move(moved);
+      if (std::abs(decrease) <= options.tolerance * cost) {
+        cost = std::min(cost, moved_cost);
+        break;
       }
     }
-    UseCamera(observation.camera);
-    if (point_used_[observation.point]) return;
-    point_used_[observation.point] = true;
-    ordering_->AddElementToGroup(point, 0);
-  }
-
-  void UseCamera(int camera) {
-    if (camera_used_[camera]) return;
-    camera_used_[camera] = true;
-    double* pose = poses_[camera].data();
-    problem_.SetManifold(pose, &manifold_);
-    ordering_->AddElementToGroup(pose, 1);
-    if (bundle_.cameras[camera].fixed) {
-      problem_.SetParameterBlockConstant(pose);
+    if (gain > kLeastGain) {
+      radius /= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
+      shrink = 2;
+      cost = equations.Linearize(state);
     } else {
-      ++free_cameras_;
+      radius /= shrink;
+      shrink *= 2;
     }
   }
-
-  void AddPriors() {
-    if (free_cameras_ == 0) return;
-    if (CalibratesToo()) {
-      problem_.AddResidualBlock(new ZeroPriorCost(options_.radial_sigma), nullptr, radial_);
-      ordering_->AddElementToGroup(radial_, 1);
-    }
-    if (!shifts_right_image_) return;
-    ordering_->AddElementToGroup(right_shift_px_, 1);
-    if (options_.right_shift_sigma_px > 0 && !camera_.right_is_virtual()) {
-      problem_.AddResidualBlock(new ZeroPriorCost(options_.right_shift_sigma_px), nullptr, right_shift_px_);
-    } else {
-      problem_.SetParameterBlockConstant(right_shift_px_);
-    }
-  }
-
-  const CameraModel& camera_;
-  const BundleOptions& options_;
-  bool robust_;
-  BundleProblem& bundle_;
-  // Ceres eliminates in the order of addresses: one vector, so that they are the same in every run. The last block
-  // holds what the calibration left.
-  std::vector<PoseBlock> poses_;
-  double* right_shift_px_ = &poses_.back()[0];
-  double* radial_ = &poses_.back()[1];
-  std::vector<bool> camera_used_, point_used_;
-  int free_cameras_ = 0;
-  bool shifts_right_image_ = false;
-  PoseManifold manifold_;
-  ceres::HuberLoss huber_{std::sqrt(kOutlierBound)}, stereo_huber_{std::sqrt(kStereoOutlierBound)};
-  ceres::Problem problem_;  // after all that it points to
-  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ = std::make_shared<ceres::ParameterBlockOrdering>();
-};
+  state.WriteTo(problem);
+  return cost;
+}
 
 void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
   for (BundleObservation& observation : bundle->observations) {
@@ -178,7 +64,7 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
       const double right_x_px = RightXRadial(camera, bundle->radial, point) + bundle->right_shift_px;
       squared_px += std::pow(right_x_px - observation.right_x_px, 2);
     }
-    const double bound = stereo ? kStereoOutlierBound : kOutlierBound;
+    const double bound = stereo ? kOutlierBound<3> : kOutlierBound<2>;
     observation.outlier = point.z() <= 0 || !(squared_px * observation.inverse_variance <= bound);
   }
 }
@@ -187,10 +73,10 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
 
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
                  const std::atomic<bool>* cancelled) {
-  BundleSolver(camera, options, true, problem).Solve(cancelled);
+  problem->robust_cost = Minimize(camera, options, true, problem, cancelled);
   MarkOutliers(camera, problem);
   if (options.final_iterations == 0) return;
-  BundleSolver(camera, options, false, problem).Solve(cancelled);
+  Minimize(camera, options, false, problem, cancelled);
   MarkOutliers(camera, problem);
 }
 

@@ -14,8 +14,9 @@ constexpr int kSimilaritySize = 8;
 void WriteSimilarity(const SimilarityTransform& transform, double* values);
 SimilarityTransform ReadSimilarity(const double* values);
 
-/// Steps of translation (map frame), rotation vector (node's frame) and, unless the scale is fixed, its logarithm. As
-/// with `PoseManifold` the cost gives the derivative by the step itself.
+/// Steps of translation (map frame), rotation vector (node's frame) and, unless the scale is fixed, its logarithm. Its
+/// Jacobian is the unit matrix over a row of zeros: the cost gives the derivative by the step itself, which spares a
+/// matrix product.
 class SimilarityManifold : public ceres::Manifold {
  public:
   explicit SimilarityManifold(bool fixed_scale) : tangent_size_(fixed_scale ? 6 : 7) {}

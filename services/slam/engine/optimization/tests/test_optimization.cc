@@ -7,7 +7,6 @@
 #include "optimization/bundle_adjustment.h"
 #include "optimization/pose_optimizer.h"
 #include "optimization/radial_projection.h"
-#include "optimization/reprojection_cost.h"
 #include "synthetic/scene.h"
 
 namespace kinemap {
@@ -97,79 +96,6 @@ TEST(PoseOptimizer, SaysNothingOfTwoPoints) {
   EXPECT_EQ(PoseOptimizer(TestCamera()).Optimize({}, Observations(scene, {}, 0, 1)).inliers, 0);
 }
 
-TEST(ReprojectionCost, JacobiansAreItsDerivatives) {
-  const CameraModel camera = TestCamera();
-  const ReprojectionCost<2> cost(camera, {300, 200}, 0.8);
-  std::array<double, kPoseSize> pose;
-  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
-  std::array<double, 3> point{0.4, -0.6, 6};
-  const double* parameters[] = {pose.data(), point.data()};
-  double residual[2], by_pose[2 * kPoseSize], by_point[2 * 3];
-  double* jacobians[] = {by_pose, by_point};
-  cost.Evaluate(parameters, residual, jacobians);
-  constexpr double kStep = 1e-6;
-  for (int axis = 0; axis < 6; ++axis) {
-    Vector6d step = Vector6d::Zero();
-    step[axis] = kStep;
-    std::array<double, kPoseSize> moved;
-    PoseManifold().Plus(pose.data(), step.data(), moved.data());
-    const double* moved_parameters[] = {moved.data(), point.data()};
-    double moved_residual[2];
-    cost.Evaluate(moved_parameters, moved_residual, nullptr);
-    for (int row = 0; row < 2; ++row) {
-      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_pose[row * kPoseSize + axis], 2e-3);
-    }
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, 3> moved = point;
-    moved[axis] += kStep;
-    const double* moved_parameters[] = {pose.data(), moved.data()};
-    double moved_residual[2];
-    cost.Evaluate(moved_parameters, moved_residual, nullptr);
-    for (int row = 0; row < 2; ++row) {
-      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_point[row * 3 + axis], 2e-3);
-    }
-  }
-}
-
-TEST(RadialReprojectionCost, JacobiansAreItsDerivatives) {
-  const CameraModel camera = TestCamera();
-  const RadialReprojectionCost<2> cost(camera, {300, 200}, 0.8);
-  std::array<double, kPoseSize> pose;
-  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
-  std::array<double, 3> point{1.4, -1.6, 6};
-  double radial = -0.1;
-  const double* parameters[] = {pose.data(), point.data(), &radial};
-  double residual[2], by_pose[2 * kPoseSize], by_point[2 * 3], by_radial[2];
-  double* jacobians[] = {by_pose, by_point, by_radial};
-  cost.Evaluate(parameters, residual, jacobians);
-  constexpr double kStep = 1e-6;
-  double moved_residual[2];
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, 3> moved = point;
-    moved[axis] += kStep;
-    const double* moved_parameters[] = {pose.data(), moved.data(), &radial};
-    cost.Evaluate(moved_parameters, moved_residual, nullptr);
-    for (int row = 0; row < 2; ++row) {
-      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_point[row * 3 + axis], 2e-3);
-    }
-  }
-  const double moved_radial = radial + kStep;
-  const double* moved_parameters[] = {pose.data(), point.data(), &moved_radial};
-  cost.Evaluate(moved_parameters, moved_residual, nullptr);
-  for (int row = 0; row < 2; ++row) EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by_radial[row], 2e-3);
-}
-
-TEST(PoseManifold, MinusUndoesPlus) {
-  std::array<double, kPoseSize> pose, moved;
-  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
-  Vector6d step, found;
-  step << 0.1, -0.2, 0.3, 0.05, 0.1, -0.02;
-  PoseManifold().Plus(pose.data(), step.data(), moved.data());
-  PoseManifold().Minus(moved.data(), pose.data(), found.data());
-  EXPECT_LT((found - step).norm(), 1e-9);
-}
-
 class Bundle : public ::testing::Test {
  protected:
   Bundle() {
@@ -242,6 +168,27 @@ TEST_F(Bundle, FindsNoRadialDistortionWhereThereIsNone) {
   Disturb();
   SolveBundle(TestCamera(), {20, 30, 1e-10, 0.05}, &problem_);
   EXPECT_NEAR(problem_.radial, 0, 1e-4);
+}
+
+TEST_F(Bundle, SparseSystemOfManyCamerasGivesTheSame) {
+  // The same scene again and again, each with cameras and points of its own.
+  constexpr int kCopies = 25;
+  const int cameras = static_cast<int>(problem_.cameras.size()), points = static_cast<int>(problem_.points.size());
+  Disturb();
+  const BundleProblem one = problem_;
+  for (int copy = 1; copy < kCopies; ++copy) {
+    problem_.cameras.insert(problem_.cameras.end(), one.cameras.begin(), one.cameras.end());
+    problem_.points.insert(problem_.points.end(), one.points.begin(), one.points.end());
+    for (BundleObservation observation : one.observations) {
+      observation.camera += copy * cameras;
+      observation.point += copy * points;
+      problem_.observations.push_back(observation);
+    }
+  }
+  SolveBundle(TestCamera(), {10, 20, 1e-8}, &problem_);
+  for (size_t i = 0; i < problem_.cameras.size(); ++i) {
+    EXPECT_LT((problem_.cameras[i].camera_from_map.Matrix() - truth_[i % cameras].Matrix()).norm(), 1e-4) << i;
+  }
 }
 
 TEST_F(Bundle, OneProblemGivesOneSolution) {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "optimization/bundle_adjustment.h"
 #include "optimization/pose_optimizer.h"
 #include "optimization/radial_projection.h"
-#include "optimization/reprojection_cost.h"
 #include "synthetic/scene.h"
 
 namespace kinemap {
@@ -15,50 +12,6 @@ namespace {
 using synthetic::CameraAt;
 using synthetic::Scene;
 using synthetic::TestStereoCamera;
-
-template <typename Cost>
-void ExpectDerivatives(const Cost& cost, bool has_calibration) {
-  std::array<double, kPoseSize> pose;
-  WritePose(CameraAt({0.3, 0.1, -0.5}, 0.2), pose.data());
-  std::array<double, 3> point{1.4, -1.6, 6};
-  double radial = -0.1, shift = 0.3;
-  double residual[3], moved_residual[3], by_pose[3 * kPoseSize], by_point[9], by_radial[3], by_shift[3];
-  double* jacobians[] = {by_pose, by_point, by_radial, by_shift};
-  const double* parameters[] = {pose.data(), point.data(), &radial, &shift};
-  cost.Evaluate(parameters, residual, jacobians);
-  constexpr double kStep = 1e-6;
-  const auto expect = [&](const double* pose_at, const double* point_at, double radial_at, double shift_at,
-                          const double* by, int stride) {
-    const double* at[] = {pose_at, point_at, &radial_at, &shift_at};
-    cost.Evaluate(at, moved_residual, nullptr);
-    for (int row = 0; row < 3; ++row) {
-      EXPECT_NEAR((moved_residual[row] - residual[row]) / kStep, by[row * stride], 2e-3);
-    }
-  };
-  for (int axis = 0; axis < 6; ++axis) {
-    Vector6d step = Vector6d::Zero();
-    step[axis] = kStep;
-    std::array<double, kPoseSize> moved;
-    PoseManifold().Plus(pose.data(), step.data(), moved.data());
-    expect(moved.data(), point.data(), radial, shift, by_pose + axis, kPoseSize);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, 3> moved = point;
-    moved[axis] += kStep;
-    expect(pose.data(), moved.data(), radial, shift, by_point + axis, 3);
-  }
-  if (!has_calibration) return;
-  expect(pose.data(), point.data(), radial + kStep, shift, by_radial, 1);
-  expect(pose.data(), point.data(), radial, shift + kStep, by_shift, 1);
-}
-
-TEST(StereoReprojectionCost, JacobiansAreItsDerivatives) {
-  const CameraModel camera = TestStereoCamera();
-  ExpectDerivatives(ReprojectionCost<3>(camera, {300, 200, 270}, 0.8), false);
-  ExpectDerivatives(RadialReprojectionCost<3>(camera, {300, 200, 270}, 0.8), true);
-  const CameraModel depth_camera = camera.WithDepthBaseline(0.3);
-  ExpectDerivatives(RadialReprojectionCost<3>(depth_camera, {300, 200, 270}, 0.8), true);
-}
 
 TEST(PoseOptimizer, KnowsHowFarItWentByTheRightImage) {
   // All points far ahead: the left image alone hardly tells a step forward.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "geometry/rigid_transform.h"
+
+namespace kinemap {
+
+/// The linear system that is left of a bundle adjustment's normal equations once the points are eliminated (Triggs et
+/// al., "Bundle adjustment: a modern synthesis", 2000, section 6): symmetric, positive definite, of blocks of six
+/// unknowns. Only blocks (a, b) with a <= b that were coupled exist; the diagonal ones always do.
+class ReducedCameraSystem {
+ public:
+  explicit ReducedCameraSystem(int size);
+
+  int size() const { return size_; }
+
+  /// Makes room for block (a, b), a <= b.
+  void Couple(int a, int b);
+
+  void SetZero();
+  /// Block (a, b), a <= b, which must have been coupled.
+  Matrix6d& Block(int a, int b) { return blocks_[number_[a * size_ + b]]; }
+  Vector6d& Right(int a) { return right_[a]; }
+
+  /// False where the matrix is not positive definite. Dense for few blocks, sparse for many; on one thread.
+  bool Solve(std::vector<Vector6d>* solution) const;
+
+ private:
+  Eigen::VectorXd StackedRight() const;
+  bool SolveDense(Eigen::VectorXd* stacked) const;
+  bool SolveSparse(Eigen::VectorXd* stacked) const;
+
+  int size_;
+  std::vector<int> number_;                 // of block (a, b) at a * size + b; -1: there is none
+  std::vector<std::pair<int, int>> place_;  // of the block of this number
+  std::vector<Matrix6d> blocks_;
+  std::vector<Vector6d> right_;
+};
+
+}  // namespace kinemap
