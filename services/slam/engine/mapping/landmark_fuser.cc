@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mapping/landmark_fuser.h"
 
+#include <algorithm>
 #include <set>
 
 #include "map/landmark_search.h"
@@ -8,7 +9,21 @@
 
 namespace kinemap {
 namespace {
+
 constexpr double kRadiusPx = 3.0;
+
+std::vector<LandmarkId> LandmarksSeenBy(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
+  std::vector<LandmarkId> seen;
+  for (const KeyframeId keyframe_id : keyframes) {
+    for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
+      if (id != kNoId) seen.push_back(id);
+    }
+  }
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  return seen;
+}
+
 }  // namespace
 
 std::vector<KeyframeId> LandmarkFuser::Targets(const SlamMap& map, KeyframeId keyframe_id) const {
@@ -30,10 +45,11 @@ void LandmarkFuser::FuseInto(SlamMap* map, KeyframeId target_id, const std::vect
   for (const LandmarkId id : landmarks) {
     Landmark* landmark = map->FindLandmark(id);
     if (landmark == nullptr || landmark->observations.empty() || landmark->observations.count(target_id) > 0) continue;
-    const auto view = PredictView(*landmark, map->PositionInMap(*landmark), target_from_map,
-                                  target.map_from_keyframe.translation, camera_, scales);
+    const Eigen::Vector3d in_map = map->PositionInMap(*landmark);
+    const auto view =
+        PredictView(*landmark, in_map, target_from_map, target.map_from_keyframe.translation, camera_, scales);
     if (!view) continue;
-    const Eigen::Vector3d in_target = target_from_map * map->PositionInMap(*landmark);
+    const Eigen::Vector3d in_target = target_from_map * in_map;
     const double radius = kRadiusPx * scales.scale(view->octave) * camera_.SpreadAt(view->pixel_px);
     const SearchWindow window{view->pixel_px, radius, view->octave - 1, view->octave};
     const int best =
@@ -55,16 +71,9 @@ void LandmarkFuser::FuseInto(SlamMap* map, KeyframeId target_id, const std::vect
 void LandmarkFuser::Fuse(SlamMap* map, KeyframeId keyframe_id) const {
   const std::vector<KeyframeId> targets = Targets(*map, keyframe_id);
   const Keyframe& keyframe = map->keyframe(keyframe_id);
-  const auto landmarks_of = [&](const Keyframe& source, std::set<LandmarkId>* ids) {
-    for (const LandmarkId id : source.landmark_ids) {
-      if (id != kNoId) ids->insert(id);
-    }
-  };
-  std::set<LandmarkId> own, theirs;
-  landmarks_of(keyframe, &own);
-  for (const KeyframeId target : targets) FuseInto(map, target, {own.begin(), own.end()});
-  for (const KeyframeId target : targets) landmarks_of(map->keyframe(target), &theirs);
-  FuseInto(map, keyframe_id, {theirs.begin(), theirs.end()});
+  const std::vector<LandmarkId> own = LandmarksSeenBy(*map, {keyframe_id});
+  for (const KeyframeId target : targets) FuseInto(map, target, own);
+  FuseInto(map, keyframe_id, LandmarksSeenBy(*map, targets));
   for (const LandmarkId id : keyframe.landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     if (landmark == nullptr) continue;

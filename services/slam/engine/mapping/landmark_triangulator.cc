@@ -10,10 +10,10 @@
 namespace kinemap {
 namespace {
 
-constexpr double kEpipolarBound = 3.841;  // 95 % of chi-squared, one degree of freedom
-constexpr double kEpipoleBound = 100;     // squared pixels: near the epipole a line tells nothing
-constexpr double kMarginPx = 10;          // beyond both ends and, at the coarsest octave, beside the line
-constexpr double kScaleTolerance = 1.5;   // times one octave's factor
+constexpr double kEpipolarReach = 1.96;  // standard deviations: 95 % of a normal distribution
+constexpr double kEpipoleBound = 100;    // squared pixels: near the epipole a line tells nothing
+constexpr double kMarginPx = 10;         // beyond both ends and, at the coarsest octave, beside the line
+constexpr double kScaleTolerance = 1.5;  // times one octave's factor
 // Best over second descriptor distance: what repeats along the line, such as a facade's windows, is left unmatched.
 constexpr double kMatchRatio = 0.8;
 constexpr double kSameSpotPx = 4;  // keypoints of several octaves at one spot are no rivals
@@ -22,6 +22,16 @@ constexpr int kNoRival = 257;      // beyond any distance
 bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
   if (a.role != b.role) return false;
   return a.role == FeatureRole::kTracked || (a.role == FeatureRole::kMapped && a.object_id == b.object_id);
+}
+
+std::vector<float> FarthestReaches(const FrameFeatures& features, const PyramidScales& scales) {
+  double spread = 1;
+  for (const Keypoint& keypoint : features.keypoints) spread = std::max(spread, keypoint.spread);
+  std::vector<float> reach_px;
+  for (int octave = 0; octave < scales.levels(); ++octave) {
+    reach_px.push_back(static_cast<float>(kEpipolarReach * scales.scale(octave) * spread));
+  }
+  return reach_px;
 }
 
 }  // namespace
@@ -35,6 +45,7 @@ struct LandmarkTriangulator::Pair {
   Eigen::Vector2d epipole_px;  // the first camera's centre in the second image
   bool has_epipole;            // false when it lies behind the second camera
   double nearest_depth;
+  std::vector<float> reach_px;  // beside the line, of no keypoint of this octave in the second image more
 };
 
 std::vector<LandmarkId> LandmarkTriangulator::Triangulate(SlamMap* map, KeyframeId keyframe_id) const {
@@ -54,7 +65,8 @@ std::vector<LandmarkId> LandmarkTriangulator::Triangulate(SlamMap* map, Keyframe
                     FundamentalFromMotion(second_from_first, camera_.Intrinsics()),
                     has_epipole ? camera_.Project(second_from_first.translation) : Eigen::Vector2d::Zero(),
                     has_epipole,
-                    options_.nearest_depth_ratio * median_depth};
+                    options_.nearest_depth_ratio * median_depth,
+                    FarthestReaches(*second.features, map->scales())};
     const std::vector<LandmarkId> of_pair = TriangulatePair(map, pair);
     made.insert(made.end(), of_pair.begin(), of_pair.end());
   }
@@ -71,15 +83,17 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
   const double nearest = std::max(pair.nearest_depth, (pair.nearest_depth - offset.z()) / direction.z());
   const Eigen::Vector2d near_px = camera_.Project(nearest * direction + offset);
   const Eigen::Vector2d far_px = camera_.Project(direction);
-  Eigen::Vector3d line = pair.fundamental * point.pixel_px.homogeneous();
-  line /= line.head<2>().norm();
+  const Eigen::Vector3d epipolar = pair.fundamental * point.pixel_px.homogeneous();
+  const Eigen::Vector3f line = (epipolar / epipolar.head<2>().norm()).cast<float>();
   int best = -1, best_distance = kStrictHammingDistance, rival_distance = kNoRival;
   pair.second.features->grid.VisitAlong(
       far_px, near_px, kMarginPx * point.spread, [&](const KeypointGrid::Entry& entry) {
+        // Most end here, before anything but the entry itself is read.
+        const float off_line = std::abs(line.x() * entry.x_px + line.y() * entry.y_px + line.z());
+        if (off_line >= pair.reach_px[entry.octave]) return;
         const Keypoint& candidate = pair.second.features->keypoints[entry.index];
         const double scale = pair.scales.scale(entry.octave) * candidate.spread;
-        const double off_line = line.x() * entry.x_px + line.y() * entry.y_px + line.z();
-        if (off_line * off_line >= kEpipolarBound * scale * scale || taken[entry.index]) return;
+        if (off_line >= kEpipolarReach * scale || taken[entry.index]) return;
         if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
         const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
         const bool elsewhere =
