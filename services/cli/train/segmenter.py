@@ -2,7 +2,7 @@
 """`kinemap train segmenter`: SOLOv2 on the user's own data or on simulated scenes."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast, get_args
 
 import typer
 from rich.console import Console
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 MODEL_NAME, CURVES_NAME = "model.safetensors", "curves.png"
 _MULTIPLE_PX = 32
+_SIZES = ("448x224", "352x288", "512x192")
 
 
 def segmenter(
@@ -35,35 +36,53 @@ def segmenter(
     category: Annotated[
         list[str] | None, typer.Option(help="What to learn; may be repeated (default: segmenter.categories).")
     ] = None,
-    variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-light_r18",
+    variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-compact_r18",
     start_from: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Begin with these weights (same variant and categories).")
     ] = None,
     size: Annotated[
-        str, typer.Option(metavar="WIDTHxHEIGHT", help="Of a training image, multiples of 32.")
-    ] = "832x288",
-    steps: Annotated[int, typer.Option(min=1, help="Batches to learn from.")] = 20_000,
+        list[str] | None,
+        typer.Option(
+            metavar="WIDTHxHEIGHT",
+            help=f"Of a training image, multiples of 32; of several each batch has one (default: {', '.join(_SIZES)}).",
+        ),
+    ] = None,
+    steps: Annotated[int, typer.Option(min=1, help="Batches to learn from; may be more when it goes on.")] = 20_000,
+    cool_down: Annotated[
+        int | None, typer.Option(min=0, help="Last steps, over which the rate falls (default: a fifth of all).")
+    ] = None,
     batch: Annotated[int, typer.Option(min=1, help="Images a batch.")] = 16,
     rate: Annotated[float, typer.Option(min=1e-7, max=1.0, help="The highest learning rate.")] = 4e-4,
     save_every: Annotated[int, typer.Option(min=1, help="Steps between two saves.")] = 1000,
+    validate_every: Annotated[
+        int | None, typer.Option(min=1, help="Steps between two judgements, at a save (default: at every one).")
+    ] = None,
     workers: Annotated[int, typer.Option(min=0, help="Processes that prepare images (0: none beside this one).")] = 2,
     device: Annotated[str, typer.Option(help="cuda, cpu, or auto.")] = "auto",
+    precision: Annotated[
+        str, typer.Option(help="fp32, fp16 (CUDA), bf16, or auto: 16 bits where the processor multiplies them.")
+    ] = "auto",
+    threads: Annotated[int | None, typer.Option(min=1, help="Of this process on a CPU (default: one a core).")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of everything that is drawn by chance.")] = 0,
 ) -> None:
     """Learn to find objects; OUT gets model.safetensors (16 bits), curves.png and what a resumption needs.
 
-    Interrupted or killed, the same command goes on from the last save.
+    Interrupted or killed, the same command goes on from the last save, also with more steps, another size or rate.
     """
-    from services.cli.simulate_seeds import parse_size
+    import cv2
+    import torch
+
     from services.cli.train.segmenter_validation import Validation
     from services.segmenter.solov2.variants import VARIANTS
-    from services.segmenter.training.trainer import Trainer, TrainingOptions
+    from services.segmenter.training.trainer import Precision, Trainer, TrainingOptions
 
     if variant not in VARIANTS:
         raise InputError(f"--variant {variant}: expected one of {', '.join(VARIANTS)}")
-    width, height = parse_size(size)
-    if width % _MULTIPLE_PX or height % _MULTIPLE_PX:
-        raise InputError(f"--size {size}: expected multiples of {_MULTIPLE_PX}, such as 832x288")
+    if precision not in get_args(Precision):
+        raise InputError(f"--precision {precision}: expected one of {', '.join(get_args(Precision))}")
+    if threads is not None:
+        torch.set_num_threads(threads)
+        cv2.setNumThreads(threads)
     categories = tuple(category or SegmenterConfig.model_fields["categories"].get_default())
     samples = read_samples([parse_training_data(text) for text in data], categories)
     validation = Validation([parse_training_data(text) for text in validate or ()], categories, VARIANTS[variant])
@@ -71,17 +90,28 @@ def segmenter(
     options = TrainingOptions(
         variant=variant,
         categories=categories,
-        size=(width, height),
+        sizes=tuple(_training_size(text) for text in size or _SIZES),
         steps=steps,
         batch=batch,
         peak_learning_rate=rate,
         warm_up=min(1000, max(1, steps // 10)),
+        cool_down=steps // 5 if cool_down is None else cool_down,
         seed=seed,
+        precision=cast(Precision, precision),
     )
     weights = _weights(start_from, variant, categories)
     trainer = Trainer(options, samples, out, _device(device), workers, weights)
-    _train(trainer, validation, out, save_every)
+    _train(trainer, validation, out, save_every, validate_every or save_every)
     print(out / MODEL_NAME)
+
+
+def _training_size(text: str) -> tuple[int, int]:
+    from services.cli.simulate_seeds import parse_size
+
+    width, height = parse_size(text)
+    if width % _MULTIPLE_PX or height % _MULTIPLE_PX:
+        raise InputError(f"--size {text}: expected multiples of {_MULTIPLE_PX}, such as {_SIZES[0]}")
+    return width, height
 
 
 def _device(name: str) -> "torch.device":
@@ -111,7 +141,7 @@ def _weights(path: Path | None, variant: str, categories: tuple[str, ...]) -> "d
     return network.state_dict()
 
 
-def _train(trainer: "Trainer", validation: "Validation", out: Path, save_every: int) -> None:
+def _train(trainer: "Trainer", validation: "Validation", out: Path, save_every: int, validate_every: int) -> None:
     from services.segmenter.training.curves import draw_curves
 
     steps = trainer.options.steps
@@ -129,12 +159,17 @@ def _train(trainer: "Trainer", validation: "Validation", out: Path, save_every: 
             )
 
         while trainer.step < steps:
-            trainer.run(min(steps, trainer.step + save_every), report)
+            begun = trainer.step
+            trainer.run(min(steps, begun + save_every), report)
             _save(trainer, out)
             said = f"step {trainer.step} of {steps}"
-            for name, value in validation.judge(trainer).items():
-                trainer.curves.setdefault(name, []).append([trainer.step, value])
-                said += f", {name} {value:.3f}"
+            for name in ("category loss", "mask loss"):
+                since = [value for step, value in trainer.curves[name] if step > begun]
+                said += f", {name} {sum(since) / len(since):.3f}"
+            if trainer.step == steps or begun // validate_every < trainer.step // validate_every:
+                for name, value in validation.judge(trainer).items():
+                    trainer.curves.setdefault(name, []).append([trainer.step, value])
+                    said += f", {name} {value:.3f}"
             console.print(said, highlight=False)
             draw_curves(trainer.curves, out / CURVES_NAME)
 

@@ -9,13 +9,12 @@ from torch.nn.functional import interpolate
 
 from services.segmenter.solov2.conv_block import ConvBlock
 from services.segmenter.solov2.coordinates import with_coordinates
-from services.segmenter.solov2.fpn import CHANNELS
 from services.segmenter.solov2.mask_feature_head import MaskFeatureHead
 from services.segmenter.solov2.variants import GRIDS, Variant
 
 
 class HeadOutput(NamedTuple):
-    """What the network says of N images; S runs over GRIDS."""
+    """What the network says of N images; S runs over the grids."""
 
     kernels: tuple[Tensor, ...]
     """(N, mask channels, S, S) each"""
@@ -31,16 +30,16 @@ class SoloV2Head(nn.Module):
     def __init__(self, variant: Variant, categories: int) -> None:
         super().__init__()
         channels, stacked = variant.feature_channels, variant.stacked_convs
-        self.mask_feature_head = MaskFeatureHead(variant.mask_channels)
-        self.cls_convs = _stack(CHANNELS, channels, stacked)
-        self.kernel_convs = _stack(CHANNELS + 2, channels, stacked)
+        self.mask_feature_head = MaskFeatureHead(variant)
+        self.cls_convs = _stack(variant.pyramid_channels, channels, stacked)
+        self.kernel_convs = _stack(variant.pyramid_channels + 2, channels, stacked)
         self.conv_cls = nn.Conv2d(channels, categories, 3, padding=1)
         self.conv_kernel = nn.Conv2d(channels, variant.kernel_channels, 3, padding=1)
 
-    def forward(self, levels: Sequence[Tensor]) -> HeadOutput:
-        """Five levels of the pyramid, finest first."""
+    def forward(self, levels: Sequence[Tensor], grids: Sequence[int] = GRIDS) -> HeadOutput:
+        """Five levels of the pyramid, finest first, and the cells a side of the grid over each."""
         kernels, categories = [], []
-        for features, grid in zip(_resized(levels), GRIDS, strict=True):
+        for features, grid in zip(_resized(levels), grids, strict=True):
             cells = interpolate(with_coordinates(features), size=(grid, grid), mode="bilinear", align_corners=False)
             kernels.append(self.conv_kernel(self.kernel_convs(cells)))
             categories.append(self.conv_cls(self.cls_convs(cells[:, :-2])))

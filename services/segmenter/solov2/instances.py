@@ -10,7 +10,7 @@ from torch.nn.functional import interpolate
 from services.segmenter.solov2.head import HeadOutput
 from services.segmenter.solov2.matrix_nms import matrix_nms
 from services.segmenter.solov2.points_nms import points_nms
-from services.segmenter.solov2.variants import GRIDS, STRIDES
+from services.segmenter.solov2.variants import STRIDES
 
 _MASK_STRIDE = 4
 
@@ -88,7 +88,7 @@ def _candidates(output: HeadOutput, image: int, options: InstanceOptions) -> tup
         cell_scores.append(scores.flatten(1).T)
         cell_kernels.append(kernels[image].flatten(1).T)
     scores = torch.cat(cell_scores).float()
-    counts = torch.tensor([grid * grid for grid in GRIDS], device=scores.device)
+    counts = torch.tensor([len(level) for level in cell_scores], device=scores.device)
     strides = torch.tensor(STRIDES, device=scores.device).repeat_interleave(counts)
     cells, labels = (scores > options.min_category_score).nonzero(as_tuple=True)
     return scores[cells, labels], labels, torch.cat(cell_kernels)[cells], strides[cells]

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The whole network."""
 
+from collections.abc import Sequence
+
 from torch import Tensor, nn
 
 from services.segmenter.solov2.fpn import Fpn
 from services.segmenter.solov2.head import HeadOutput, SoloV2Head
 from services.segmenter.solov2.resnet import ResNet
-from services.segmenter.solov2.variants import Variant
+from services.segmenter.solov2.variants import GRIDS, Variant
 
 
 class SoloV2(nn.Module):
@@ -16,10 +18,10 @@ class SoloV2(nn.Module):
         super().__init__()
         self.variant = variant
         self.backbone = ResNet(variant.depth)
-        self.neck = Fpn(self.backbone.out_channels)
+        self.neck = Fpn(self.backbone.out_channels, variant.pyramid_channels)
         self.mask_head = SoloV2Head(variant, categories)
 
-    def forward(self, images: Tensor) -> HeadOutput:
-        """(N, 3, H, W), normalised as preprocessing.py does it; H and W multiples of 32."""
-        output: HeadOutput = self.mask_head(self.neck(self.backbone(images)))
+    def forward(self, images: Tensor, grids: Sequence[int] = GRIDS) -> HeadOutput:
+        """(N, 3, H, W), normalised as preprocessing.py does it; H and W multiples of 32. `grids`: cells a side."""
+        output: HeadOutput = self.mask_head(self.neck(self.backbone(images)), grids)
         return output

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The configurations of SOLOv2 that there are public weights for, and their numbers."""
+"""The configurations of SOLOv2, those that there are public weights for and a smaller one, and their numbers."""
 
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -18,6 +18,7 @@ class Variant:
 
     `scale_ranges_px`: the square root of an instance's area (box) that a level learns, one pair a level.
     `test_size`: the box (width, height) that an image is fitted into.
+    `pyramid_channels`, `branch_channels`: of the feature pyramid and within the mask feature branch.
     """
 
     depth: int
@@ -26,6 +27,8 @@ class Variant:
     mask_channels: int
     scale_ranges_px: tuple[tuple[int, int], ...]
     test_size: tuple[int, int]
+    pyramid_channels: int = 256
+    branch_channels: int = 128
 
     @property
     def kernel_channels(self) -> int:
@@ -45,8 +48,13 @@ def _light(depth: int) -> Variant:
     return Variant(depth, 2, 256, 128, _LIGHT_RANGES, (852, 448))
 
 
+def _compact(depth: int) -> Variant:
+    return Variant(depth, 2, 128, 64, _LIGHT_RANGES, (852, 448), pyramid_channels=128, branch_channels=64)
+
+
 VARIANTS: Final = MappingProxyType(
     {
+        "solov2-compact_r18": _compact(18),
         "solov2-light_r18": _light(18),
         "solov2-light_r34": _light(34),
         "solov2-light_r50": _light(50),

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Batches of augmented samples with their targets, made beside the training."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import torch
+from numpy.random import Generator
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
@@ -17,7 +18,7 @@ from services.segmenter.training.geometric_augmentation import Mirror, RandomSec
 from services.segmenter.training.losses import BatchTargets
 from services.segmenter.training.photometric_augmentation import Photometric
 from services.segmenter.training.sample import Sample, Samples
-from services.segmenter.training.targets import Targets, assign
+from services.segmenter.training.targets import Targets, assign, grids_of
 
 
 class Batch(NamedTuple):
@@ -35,31 +36,44 @@ class Batch(NamedTuple):
         return Batch(self.images.to(device, non_blocking=True), BatchTargets(*moved))
 
 
+class Augmentation(Protocol):
+    """What is done to a sample before it is learned from."""
+
+    def apply(self, sample: Sample, draw: Callable[[], Sample], size: tuple[int, int], random: Generator) -> Sample:
+        """The sample in `size` (width, height); `draw` gives another one to take instances of."""
+
+
 @dataclass(frozen=True)
 class Augmentations:
-    """All that is done to a sample; `size` (width, height) in multiples of 32 is what comes out."""
+    """All that makes one sample many. `box` (width, height): what images are fitted into in use."""
 
-    size: tuple[int, int]
+    box: tuple[int, int]
     copy_paste: CopyPaste = field(default_factory=CopyPaste)
     mirror: Mirror = field(default_factory=Mirror)
     photometric: Photometric = field(default_factory=Photometric)
 
-    def apply(self, sample: Sample, other: Sample, random: np.random.Generator) -> Sample:
-        """`sample`, with instances of `other`; both are looked at in a section of their own."""
-        section = RandomSection(self.size)
+    def apply(self, sample: Sample, draw: Callable[[], Sample], size: tuple[int, int], random: Generator) -> Sample:
+        """A section, with instances of a section of another sample."""
+        section = RandomSection(size, self.box)
         sample = section(self.mirror(sample, random), random)
-        sample = self.copy_paste.paste(sample, section(other, random), random)
+        sample = self.copy_paste.paste(sample, lambda: section(draw(), random), random)
         return self.photometric(sample, random)
 
 
-class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
-    """Draws (step, sample) are numbers: the same draw gives the same bytes in any worker process."""
+class Draw(NamedTuple):
+    """One place in a batch: numbers, so that the same draw gives the same bytes in any worker process."""
 
-    def __init__(self, samples: Samples, augmentations: Augmentations, variant: Variant, seed: int) -> None:
+    step: int
+    number: int
+
+
+class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
+    def __init__(self, samples: Samples, augmentation: Augmentation, variant: Variant, options: "BatchOptions") -> None:
         self._samples = samples
-        self._augmentations = augmentations
+        self._augmentation = augmentation
         self._variant = variant
-        self._seed = seed
+        self._sizes = options.sizes
+        self._seed = options.seed
         # kept, since of a large data set it takes milliseconds to draw; plain, so that workers can be sent it
         self._epoch, self._order = -1, np.zeros(0, np.int64)
 
@@ -71,16 +85,19 @@ class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
             self._order = np.random.default_rng((self._seed, epoch, 0)).permutation(len(self._samples))
         return int(self._order[place])
 
-    def __getitem__(self, draw: int) -> tuple[Tensor, Targets]:
-        random = np.random.default_rng((self._seed, draw))
-        sample = self._samples[self._number_of(draw)]
-        other = self._samples[int(random.integers(len(self._samples)))]
-        sample = self._augmentations.apply(sample, other, random)
-        return torch.from_numpy(normalized(sample.image)), assign(sample, self._variant)
+    def __getitem__(self, draw: Draw) -> tuple[Tensor, Targets]:
+        # a batch has one size
+        size = self._sizes[int(np.random.default_rng((self._seed, draw.step, 1)).integers(len(self._sizes)))]
+        random = np.random.default_rng((self._seed, draw.number))
+        sample = self._samples[self._number_of(draw.number)]
+        other = int(random.integers(len(self._samples)))
+        sample = self._augmentation.apply(sample, lambda: self._samples[other], size, random)
+        targets = assign(sample, self._variant, grids_of(size[0], self._variant))
+        return torch.from_numpy(normalized(sample.image)), targets
 
 
-class _Draws(Sampler[list[int]]):
-    """The numbers of each batch, from a step on."""
+class _Draws(Sampler[list[Draw]]):
+    """Those of each batch, from a step on."""
 
     def __init__(self, first_step: int, last_step: int, batch: int) -> None:
         self._steps = range(first_step, last_step)
@@ -91,7 +108,7 @@ class _Draws(Sampler[list[int]]):
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         for step in self._steps:
-            yield list(range(step * self._batch, (step + 1) * self._batch))
+            yield [Draw(step, number) for number in range(step * self._batch, (step + 1) * self._batch)]
 
 
 def _collate(items: Sequence[tuple[Tensor, Targets]]) -> Batch:
@@ -110,16 +127,18 @@ class BatchOptions:
 
     batch: int
     steps: tuple[int, int]
+    sizes: Sequence[tuple[int, int]]
+    """(width, height) in multiples of 32; each batch has one of them"""
     seed: int = 0
     workers: int = 0
 
 
 def batches(
-    samples: Samples, augmentations: Augmentations, variant: Variant, options: BatchOptions
+    samples: Samples, augmentation: Augmentation, variant: Variant, options: BatchOptions
 ) -> "DataLoader[Batch]":
     """The batches, in order."""
     return DataLoader(
-        _AugmentedSamples(samples, augmentations, variant, options.seed),  # type: ignore[arg-type]
+        _AugmentedSamples(samples, augmentation, variant, options),  # type: ignore[arg-type]
         batch_sampler=_Draws(*options.steps, options.batch),
         collate_fn=_collate,
         num_workers=options.workers,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copy-paste (Ghiasi et al., CVPR 2021): instances of another image, in another size, in front of this one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -21,9 +22,12 @@ class CopyPaste:
     least_visible: float = 0.2
     """of an older instance's pixels; one of which less is left is left out"""
 
-    def paste(self, sample: Sample, other: Sample, random: np.random.Generator) -> Sample:
-        """`sample` with instances of `other`, whose images may differ in size."""
-        if random.random() >= self.share or len(other.labels) == 0:
+    def paste(self, sample: Sample, draw: Callable[[], Sample], random: np.random.Generator) -> Sample:
+        """`sample` with instances of one that is drawn where it is needed; the images may differ in size."""
+        if random.random() >= self.share:
+            return sample
+        other = draw()
+        if len(other.labels) == 0:
             return sample
         other = self._moved(Mirror()(other, random), sample.image.shape[:2], random)
         chosen = random.permutation(len(other.labels))[: int(random.integers(1, self.most_instances + 1))]

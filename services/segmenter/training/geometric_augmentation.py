@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from services.segmenter.solov2.preprocessing import fitted_hw
 from services.segmenter.training.sample import Sample
 
 
@@ -15,7 +16,7 @@ def resized(sample: Sample, width: int, height: int) -> Sample:
     image = cv2.resize(sample.image, (width, height), interpolation=cv2.INTER_LINEAR)
     masks = np.zeros((len(sample.masks), height, width), np.uint8)
     for target, mask in zip(masks, sample.masks, strict=True):
-        cv2.resize(mask, (width, height), dst=target, interpolation=cv2.INTER_NEAREST_EXACT)
+        cv2.resize(np.ascontiguousarray(mask), (width, height), dst=target, interpolation=cv2.INTER_NEAREST_EXACT)
     return Sample(np.asarray(image, np.uint8), masks, sample.labels)
 
 
@@ -54,24 +55,45 @@ def _turned_masks(masks: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
 
 @dataclass(frozen=True)
 class RandomSection:
-    """Scales the image about what fits `size`, its aspect too, and takes a section of it; black beyond the border."""
+    """Takes a section of the image, scaled about as it is in use, its aspect changed; black beyond the border.
+
+    A section is cheaper than the whole image and shows things in the size that they have in use; small scales show
+    whole what is large.
+    """
 
     size: tuple[int, int]
     """(width, height) of what comes out"""
-    scales: tuple[float, float] = (0.6, 1.8)
-    """of the size that just fills `size`"""
-    aspect: float = 0.1
+    box: tuple[int, int]
+    """(width, height) that images are fitted into in use"""
+    scales: tuple[float, float] = (0.45, 1.4)
+    """of the size in use"""
+    aspect: float = 0.15
     """how far width and height may differ in scale"""
+    around_instance: float = 0.7
+    """share of the sections that show a certain instance, if there is one"""
     least_px: int = 16
     """instances of fewer pixels are left out: nothing can be learned of them"""
 
     def __call__(self, sample: Sample, random: np.random.Generator) -> Sample:
         height, width = sample.image.shape[:2]
-        # most often not far from the size that is used later, now and then much larger or smaller
-        factor = max(self.size[0] / width, self.size[1] / height) * np.exp(random.uniform(*np.log(self.scales)))
+        factor = fitted_hw(height, width, self.box)[1] / width * np.exp(random.uniform(*np.log(self.scales)))
         stretch = np.exp(random.uniform(-self.aspect, self.aspect) / 2)
-        new_width, new_height = max(1, round(width * factor * stretch)), max(1, round(height * factor / stretch))
-        scaled = resized(sample, new_width, new_height)
-        x = round(random.random() * max(0, new_width - self.size[0]))
-        y = round(random.random() * max(0, new_height - self.size[1]))
-        return placed(scaled, self.size, -x, -y).with_visible_instances(self.least_px)
+        factors = (factor * stretch, factor / stretch)
+        shown = [min(of, round(new / by)) for of, new, by in zip((width, height), self.size, factors, strict=True)]
+        x, y = self._corner(sample, (shown[0], shown[1]), random)
+        part = np.s_[y : y + shown[1], x : x + shown[0]]
+        masks = sample.masks[:, *part]
+        seen = masks.any((1, 2))
+        section = Sample(np.ascontiguousarray(sample.image[part]), masks[seen], sample.labels[seen])
+        scaled = [min(new, max(1, round(of * by))) for of, new, by in zip(shown, self.size, factors, strict=True)]
+        return placed(resized(section, scaled[0], scaled[1]), self.size, 0, 0).with_visible_instances(self.least_px)
+
+    def _corner(self, sample: Sample, shown: tuple[int, int], random: np.random.Generator) -> tuple[int, int]:
+        """Upper left corner of the section (width, height) in the image."""
+        room = np.array(sample.image.shape[1::-1]) - shown
+        corner = random.random(2) * room
+        if len(sample.masks) and random.random() < self.around_instance:
+            x, y, box_width, box_height = cv2.boundingRect(sample.masks[int(random.integers(len(sample.masks)))])
+            center = np.array((x + box_width / 2, y + box_height / 2))
+            corner = np.clip(center - random.uniform(0.2, 0.8, 2) * shown, 0, room)
+        return round(corner[0]), round(corner[1])

@@ -32,9 +32,3 @@ class Samples(Protocol):
 
     def __getitem__(self, index: int, /) -> Sample:
         """Raises InputError when what the sample is made of cannot be read."""
-
-
-class Augmentation(Protocol):
-    """Changes a sample by chance."""
-
-    def __call__(self, sample: Sample, random: np.random.Generator) -> Sample: ...

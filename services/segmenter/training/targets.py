@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each cell of each grid shall answer (SOLO, Wang et al., ECCV 2020, section 3.3; kept by SOLOv2)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -18,6 +19,12 @@ _REACH = 1
 NOBODY = -1
 
 
+def grids_of(width: int, variant: Variant) -> tuple[int, ...]:
+    """The grids for images of `width`: in sections of larger ones, cells keep the width that they have in use."""
+    share = min(1.0, width / variant.test_size[0])
+    return tuple(max(1, round(grid * share)) for grid in GRIDS)
+
+
 @dataclass(frozen=True)
 class Targets:
     """Of one image."""
@@ -30,31 +37,33 @@ class Targets:
     """(M, H / 4, W / 4) in the size of the mask features, 0 or 1"""
 
 
-def assign(sample: Sample, variant: Variant) -> Targets:
+def assign(sample: Sample, variant: Variant, grids: Sequence[int] = GRIDS) -> Targets:
     """Targets of a sample that has the size of the network's input (multiples of 32).
 
     An instance belongs to the levels whose range its size falls in; there the cells in the middle of it, around its
-    centre of mass, answer. Where two claim a cell, the later one has it.
+    centre of mass, answer. Where two claim a cell, the later one has it. For one too thin to cover half of an element
+    of the mask features nobody answers.
     """
     height, width = sample.image.shape[:2]
-    categories = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in GRIDS)
-    instances = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in GRIDS)
+    categories = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in grids)
+    instances = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in grids)
+    masks = _reduced(sample.masks)
     for number, (mask, label) in enumerate(zip(sample.masks, sample.labels, strict=True)):
         x, y, box_width, box_height = cv2.boundingRect(mask)
-        if box_width == 0:
+        if not masks[number].any():
             continue
         moments = cv2.moments(mask[y : y + box_height, x : x + box_width], binaryImage=True)
         center = (x + moments["m10"] / moments["m00"], y + moments["m01"] / moments["m00"])
         half = (0.5 * _CENTER_SHARE * box_width, 0.5 * _CENTER_SHARE * box_height)
         size_px = float(np.sqrt(box_width * box_height))
-        for level, (grid, (least, most)) in enumerate(zip(GRIDS, variant.scale_ranges_px, strict=True)):
+        for level, (grid, (least, most)) in enumerate(zip(grids, variant.scale_ranges_px, strict=True)):
             if not least <= size_px <= most:
                 continue
             columns = _cells(center[0], half[0], width, grid)
             rows = _cells(center[1], half[1], height, grid)
             categories[level][rows, columns] = label
             instances[level][rows, columns] = number
-    return Targets(categories, instances, _reduced(sample.masks))
+    return Targets(categories, instances, masks)
 
 
 def _cells(center_px: float, half_px: float, size_px: int, grid: int) -> slice:

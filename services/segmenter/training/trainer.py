@@ -4,38 +4,52 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import torch
 from torch import nn
 
+from services.segmenter.processor import multiplies_bfloat16
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.variants import VARIANTS
 from services.segmenter.training.averaged_weights import AveragedWeights
-from services.segmenter.training.batches import Augmentations, Batch, BatchOptions, batches
+from services.segmenter.training.batches import Augmentation, Augmentations, Batch, BatchOptions, batches
 from services.segmenter.training.learning_rate import learning_rate
 from services.segmenter.training.losses import segmentation_loss
 from services.segmenter.training.sample import Samples
-from services.segmenter.training.training_state import TrainingState, load_training_state, settings_of
+from services.segmenter.training.training_state import TrainingState, load_training_state
 
 _MAX_GRADIENT = 10.0
 STATE_NAME = "training.pt"
 
 
+Precision = Literal["auto", "fp32", "fp16", "bf16"]
+
+
 @dataclass(frozen=True)
 class TrainingOptions:
-    """What decides the outcome; the same options, samples and kind of machine give the same network."""
+    """What decides the outcome; the same options, samples and kind of machine give the same network.
 
-    variant: str = "solov2-light_r18"
+    All but the variant and the categories may change when a training goes on.
+    """
+
+    variant: str = "solov2-compact_r18"
     categories: tuple[str, ...] = ()
-    size: tuple[int, int] = (832, 288)
-    """(width, height) of a training image, multiples of 32"""
+    sizes: tuple[tuple[int, int], ...] = ((448, 224),)
+    """(width, height) of a training image, multiples of 32: each batch has one of them"""
     steps: int = 20_000
     batch: int = 16
     peak_learning_rate: float = 4e-4
     weight_decay: float = 0.05
     warm_up: int = 1000
+    cool_down: int = 4000
     seed: int = 0
+    precision: Precision = "auto"
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """What must be the same when a training goes on."""
+        return {"variant": self.variant, "categories": list(self.categories)}
 
 
 @dataclass(frozen=True)
@@ -59,6 +73,8 @@ class Trainer:
     workers: int = 0
     start_from: dict[str, torch.Tensor] | None = None
     """weights to begin with; random otherwise"""
+    augmentation: Augmentation | None = None
+    """all of Augmentations when not given"""
     curves: dict[str, list[list[float]]] = field(default_factory=dict)
     """by name, [step, value] each: what is drawn"""
 
@@ -72,12 +88,12 @@ class Trainer:
         self._average = AveragedWeights(self._network)
         self._optimizer = torch.optim.AdamW(_parameter_groups(self._network, self.options.weight_decay))
         # bfloat16 needs no scaling; half precision of older cards does
-        self._dtype = _mixed_precision(self.device)
+        self._dtype = _mixed_precision(self.device, self.options.precision)
         self._scaler = torch.amp.GradScaler(self.device.type, enabled=self._dtype == torch.float16)
         self.step = 0
         state_path = self.folder / STATE_NAME
         if state_path.is_file():
-            self._restore(load_training_state(state_path, settings_of(self.options)))
+            self._restore(load_training_state(state_path, self.options.identity))
 
     def run(self, until: int, report: Callable[[StepReport], None]) -> None:
         """Train up to step `until`, then write the state."""
@@ -93,19 +109,26 @@ class Trainer:
         return network.eval()
 
     def _batches(self, until: int) -> Iterator[Batch]:
-        options = BatchOptions(self.options.batch, (self.step, until), self.options.seed, self.workers)
-        augmentations = Augmentations(self.options.size)
-        yield from batches(self.samples, augmentations, VARIANTS[self.options.variant], options)
+        variant = VARIANTS[self.options.variant]
+        steps = (self.step, until)
+        options = BatchOptions(self.options.batch, steps, self.options.sizes, self.options.seed, self.workers)
+        yield from batches(self.samples, self.augmentation or Augmentations(variant.test_size), variant, options)
 
     def _train(self, batch: Batch) -> StepReport:
         options = self.options
-        rate = learning_rate(self.step, options.steps, peak=options.peak_learning_rate, warm_up=options.warm_up)
+        rate = learning_rate(
+            self.step,
+            options.steps,
+            peak=options.peak_learning_rate,
+            warm_up=options.warm_up,
+            cool_down=options.cool_down,
+        )
         for group in self._optimizer.param_groups:
             group["lr"] = rate
         self._optimizer.zero_grad(set_to_none=True)
         images = batch.images.contiguous(memory_format=torch.channels_last)
         with torch.autocast(self.device.type, self._dtype, enabled=self._dtype != torch.float32):
-            output = self._network(images)
+            output = self._network(images, batch.targets.grids)
             loss = segmentation_loss(output, batch.targets)
         self._scaler.scale(loss.total).backward()  # type: ignore[no-untyped-call]
         self._scaler.unscale_(self._optimizer)
@@ -119,7 +142,7 @@ class Trainer:
     def _state(self) -> TrainingState:
         return TrainingState(
             self.step,
-            settings_of(self.options),
+            self.options.identity,
             self._network.state_dict(),
             self._average.state(),
             self._average.updates,
@@ -158,7 +181,10 @@ def _parameter_groups(network: nn.Module, weight_decay: float) -> list[dict[str,
     return [{"params": decayed, "weight_decay": weight_decay}, {"params": others, "weight_decay": 0.0}]
 
 
-def _mixed_precision(device: torch.device) -> torch.dtype:
+def _mixed_precision(device: torch.device, precision: Precision) -> torch.dtype:
+    """What products are computed in; sums, losses and weights keep 32 bits."""
+    if precision != "auto":
+        return {"fp32": torch.float32, "fp16": torch.float16, "bf16": torch.bfloat16}[precision]
     if device.type != "cuda":
-        return torch.float32
+        return torch.bfloat16 if device.type == "cpu" and multiplies_bfloat16() else torch.float32
     return torch.bfloat16 if torch.cuda.is_bf16_supported() else torch.float16

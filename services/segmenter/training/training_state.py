@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pickle
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -51,11 +51,6 @@ def load_training_state(path: Path, settings: dict[str, Any]) -> TrainingState:
         if state.settings.get(name) != value:
             raise InputError(
                 f"{path}: was trained with {name} {state.settings.get(name)}, expected {value}: "
-                "give the same options to go on, or another --out to begin anew"
+                "give the same to go on, or another --out to begin anew"
             )
     return state
-
-
-def settings_of(options: Any) -> dict[str, Any]:
-    """A dataclass of plain values as a state keeps it."""
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(options).items()}

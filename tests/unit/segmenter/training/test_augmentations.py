@@ -22,7 +22,7 @@ def _agreement(sample: Sample) -> float:
 @pytest.mark.parametrize("seed", range(8))
 def test_masks_move_with_the_image(seed: int) -> None:
     random = np.random.default_rng(seed)
-    sample = RandomSection((128, 96))(Mirror()(painted_sample(seed), random), random)
+    sample = RandomSection((128, 96), (200, 120))(Mirror()(painted_sample(seed), random), random)
     assert sample.image.shape == (96, 128, 3)
     assert sample.masks.shape[1:] == (96, 128)
     assert len(sample.masks) == len(sample.labels)
@@ -34,7 +34,7 @@ def test_masks_move_with_the_image(seed: int) -> None:
 def test_what_is_pasted_covers_what_was_there(seed: int) -> None:
     random = np.random.default_rng(seed)
     before, other = painted_sample(seed), painted_sample(seed + 100, (200, 100))
-    after = CopyPaste(share=1.0).paste(before, other, random)
+    after = CopyPaste(share=1.0).paste(before, lambda: other, random)
     assert after.masks.sum(0).max() == 1
     assert _agreement(after) > 0.9
     assert len(after.labels) >= 1
@@ -52,7 +52,22 @@ def test_colours_change_and_masks_do_not() -> None:
 
 def test_the_same_chance_gives_the_same_bytes() -> None:
     one, two = (
-        Augmentations((128, 96)).apply(painted_sample(3), painted_sample(4), np.random.default_rng(9)) for _ in range(2)
+        Augmentations((320, 192)).apply(
+            painted_sample(3), lambda: painted_sample(4), (128, 96), np.random.default_rng(9)
+        )
+        for _ in range(2)
     )
+    assert one.image.shape == (96, 128, 3)
     np.testing.assert_array_equal(one.image, two.image)
     np.testing.assert_array_equal(one.masks, two.masks)
+
+
+def test_most_sections_show_an_instance() -> None:
+    random = np.random.default_rng(1)
+    image = np.full((400, 800, 3), 90, np.uint8)
+    mask = np.zeros((1, 400, 800), np.uint8)
+    mask[0, 300:330, 700:740] = 1
+    sample = Sample(image, mask, np.zeros(1, np.int64))
+    section = RandomSection((160, 96), (800, 400), scales=(0.9, 1.1))
+    shown = [len(section(sample, random).labels) for _ in range(200)]
+    assert 0.65 < np.mean(shown) < 0.9

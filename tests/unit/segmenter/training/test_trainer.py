@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop on painted boxes: it learns, and going on after an interruption is as if there had been none."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,15 @@ from services.segmenter.training.trainer import STATE_NAME, StepReport, Trainer,
 from tests.unit.segmenter.training.painted_samples import PaintedSamples
 
 CPU = torch.device("cpu")
-OPTIONS = TrainingOptions(categories=("a", "b"), size=(96, 64), steps=4, batch=2, warm_up=1)
+OPTIONS = TrainingOptions(
+    variant="solov2-light_r18",
+    categories=("a", "b"),
+    sizes=((96, 64), (64, 96)),
+    steps=4,
+    batch=2,
+    warm_up=1,
+    cool_down=2,
+)
 
 
 def _trained(folder: Path, *stops: int) -> tuple[Trainer, list[StepReport]]:
@@ -36,8 +45,8 @@ def test_a_resumed_training_ends_in_the_same_weights(tmp_path: Path) -> None:
 
 def test_a_state_of_other_options_or_cut_off_is_refused(tmp_path: Path) -> None:
     _trained(tmp_path, 1)
-    other = TrainingOptions(categories=("a", "b"), size=(96, 64), steps=5, batch=2, warm_up=1)
-    with pytest.raises(InputError, match=r"was trained with steps 4, expected 5"):
+    other = replace(OPTIONS, variant="solov2-compact_r18")
+    with pytest.raises(InputError, match=r"was trained with variant solov2-light_r18, expected solov2-compact_r18"):
         Trainer(other, PaintedSamples(), tmp_path, CPU)
     state = tmp_path / STATE_NAME
     state.write_bytes(state.read_bytes()[:5000])
@@ -45,9 +54,18 @@ def test_a_state_of_other_options_or_cut_off_is_refused(tmp_path: Path) -> None:
         Trainer(OPTIONS, PaintedSamples(), tmp_path, CPU)
 
 
-def test_the_rate_warms_up_and_falls() -> None:
-    rates = [learning_rate(step, 100, peak=1.0, warm_up=10) for step in range(100)]
+def test_a_training_can_be_made_longer(tmp_path: Path) -> None:
+    _trained(tmp_path, 2)
+    longer = Trainer(replace(OPTIONS, steps=9, batch=1), PaintedSamples(), tmp_path, CPU)
+    reports: list[StepReport] = []
+    longer.run(4, reports.append)
+    assert [report.step for report in reports] == [3, 4]
+    assert reports[-1].learning_rate == OPTIONS.peak_learning_rate
+
+
+def test_the_rate_warms_up_stays_and_falls() -> None:
+    rates = [learning_rate(step, 100, peak=1.0, warm_up=10, cool_down=20) for step in range(100)]
     assert rates[0] == pytest.approx(0.1)
-    assert max(rates) == pytest.approx(1.0)
-    assert rates[10:] == sorted(rates[10:], reverse=True)
+    assert rates[9:80] == pytest.approx([1.0] * 71)
+    assert rates[80:] == sorted(rates[80:], reverse=True)
     assert rates[-1] < 0.02

@@ -87,7 +87,7 @@ class TestRefused:
     def test_other_shapes(self, tmp_path: Path, content: Any) -> None:
         state = {**content["state_dict"], "backbone.conv1.weight": torch.zeros(64, 3, 3, 3)}
         torch.save({**content, "state_dict": state}, tmp_path / "other.pth")
-        self._refused(tmp_path / "other.pth", "its tensors fit none of solov2-light_r18, ")
+        self._refused(tmp_path / "other.pth", "its tensors fit none of solov2-compact_r18, ")
 
     def test_deformable_convolutions(self, tmp_path: Path, content: Any) -> None:
         state = {**content["state_dict"], "mask_head.cls_convs.1.conv.conv_offset.weight": torch.zeros(1)}
