@@ -3,9 +3,12 @@
 #include <cmath>
 
 #include "optimization/bundle_equations.h"
+#include "optimization/speed_ratio.h"
 
 namespace kinemap {
 namespace {
+
+constexpr double kSpeedOutlierBound = 3.841;  // 95 % of chi-squared, one degree of freedom
 
 struct Weighed {
   double cost;
@@ -28,6 +31,13 @@ ObservedPixels<kRows> PixelsOf(const BundleObservation& observation) {
   return pixels;
 }
 
+SpeedRatio RatioOf(const SpeedChange& change, const BundleState& state) {
+  return {{state.cameras_from_map[change.first], state.cameras_from_map[change.second],
+           state.cameras_from_map[change.third]},
+          change.earlier_s,
+          change.later_s};
+}
+
 std::vector<CameraPose> PosesOf(const BundleState& state) {
   return {state.cameras_from_map.begin(), state.cameras_from_map.end()};
 }
@@ -43,6 +53,10 @@ double BundleEquations::Cost(const BundleState& state) const {
         Reproject<kRows>(camera_, RestOf(state), in_camera) - PixelsOf<kRows>(observation);
     cost += Weigh(error.squaredNorm(), observation.inverse_variance, kOutlierBound<kRows>, robust_).cost;
   };
+  for (const SpeedTerm& term : speed_terms_) {
+    const double sigma = options_.speed_change * term.change.sigma, error = RatioOf(term.change, state).logarithm;
+    cost += Weigh(error * error, 1 / (sigma * sigma), kSpeedOutlierBound, true).cost;
+  }
   for (const Term& term : terms_) {
     const BundleObservation& observation = problem_.observations[term.observation];
     if (std::isnan(observation.right_x_px)) {
@@ -62,6 +76,7 @@ double BundleEquations::Linearize(const BundleState& state) {
     block.gradient.setZero();
   }
   double cost = 0;
+  for (SpeedTerm& term : speed_terms_) cost += Add(state, &term);
   for (PointEquations& point : points_) {
     point.hessian.setZero();
     point.gradient.setZero();
@@ -102,6 +117,21 @@ double BundleEquations::Add(const BundleState& state, const CameraPose& pose, in
   rest.hessian.template topLeftCorner<2, 2>().noalias() += weighed.weight * by.by_rest.transpose() * by.by_rest;
   rest.gradient.template head<2>().noalias() += weighed.weight * by.by_rest.transpose() * error;
   if (block >= 0) blocks_[block].with_rest.template leftCols<2>().noalias() += weighed_by_pose.transpose() * by.by_rest;
+  return weighed.cost;
+}
+
+double BundleEquations::Add(const BundleState& state, SpeedTerm* term) {
+  const SpeedRatio ratio = RatioOf(term->change, state);
+  const double sigma = options_.speed_change * term->change.sigma;
+  const Weighed weighed = Weigh(ratio.logarithm * ratio.logarithm, 1 / (sigma * sigma), kSpeedOutlierBound, true);
+  term->weight = weighed.weight;
+  term->by_pose = ratio.by_pose;
+  for (int i = 0; i < 3; ++i) {
+    if (term->blocks[i] < 0) continue;
+    BlockEquations& block = blocks_[term->blocks[i]];
+    block.hessian.noalias() += term->weight * ratio.by_pose[i] * ratio.by_pose[i].transpose();
+    block.gradient += term->weight * ratio.logarithm * ratio.by_pose[i];
+  }
   return weighed.cost;
 }
 

@@ -191,6 +191,27 @@ TEST_F(Bundle, SparseSystemOfManyCamerasGivesTheSame) {
   }
 }
 
+TEST_F(Bundle, SpeedHoldsACameraThatSeesLittle) {
+  std::erase_if(problem_.observations,
+                [](const BundleObservation& observation) { return observation.camera == 4 && observation.point > 0; });
+  const Eigen::Vector3d ahead = CameraAt({0.4 * 4, 0, 0.3 * 4 + 1}, 0.08).Inverse().translation;
+  problem_.cameras[4].camera_from_map = CameraAt(ahead, 0.08);
+  problem_.speed_changes = {{2, 3, 4, 0.1, 0.1, 0.02}};
+  const auto way = [&] {
+    return (problem_.cameras[4].camera_from_map.Inverse().translation -
+            problem_.cameras[3].camera_from_map.Inverse().translation)
+        .norm();
+  };
+  const BundleProblem before = problem_;
+  SolveBundle(TestCamera(), {20, 20, 1e-9}, &problem_);
+  EXPECT_GT(way(), 1);
+  problem_ = before;
+  BundleOptions options{20, 20, 1e-9};
+  options.speed_change = 1;
+  SolveBundle(TestCamera(), options, &problem_);
+  EXPECT_NEAR(way(), 0.5, 0.02);
+}
+
 TEST_F(Bundle, OneProblemGivesOneSolution) {
   Disturb();
   BundleProblem again = problem_;
