@@ -13,6 +13,7 @@ import psutil
 from services.cli.doctor_packages import Check, check_debian_packages, check_python_packages
 from services.cli.ports import is_free
 from services.runtime.config import Config
+from services.runtime.errors import InputError
 
 _LEAST_DISK_GB = 5.0
 _LEAST_MEMORY_GB = 4.0
@@ -33,6 +34,7 @@ def all_checks(config: Config, folder: Path) -> Iterator[Check]:
     yield check_disk(folder)
     yield check_memory()
     yield check_gpu()
+    yield check_segmenter(config)
 
 
 def check_python() -> Check:
@@ -90,3 +92,19 @@ def check_gpu() -> Check:
     command = ["nvidia-smi", "--query-gpu=name,memory.total", "--format=csv,noheader"]
     asked = subprocess.run(command, capture_output=True, text=True, check=False)
     return Check("GPU", None, asked.stdout.strip().replace("\n", "; ") or "nvidia-smi answers nothing")
+
+
+def check_segmenter(config: Config) -> Check:
+    """Which network would find instances, and why it; without one, `auto` takes what the input itself has."""
+    from services.segmenter.weights.choice import choose_model
+
+    settings = config.segmenter
+    name = "segmenter's network"
+    try:
+        choice = choose_model(settings.weights)
+    except InputError as error:
+        needed = settings.backend == "solov2" or settings.weights is not None
+        return Check(name, False if needed else None, str(error), "kinemap weights pull NAME")
+    if settings.backend in ("auto", "solov2"):
+        return Check(name, None, f"{choice.path} ({choice.why})")
+    return Check(name, None, f"not used: segmenter.backend is {settings.backend}; there is {choice.path}")

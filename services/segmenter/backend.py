@@ -60,6 +60,11 @@ class InstanceFilter:
     categories: Collection[str]
     min_score: float = 0.0
 
+    def takes(self, candidate: Candidate) -> bool:
+        """Whether it is of these categories and sure enough."""
+        # Scores travel as 32 bits: one that is on the edge must fall on the same side when it was recorded.
+        return candidate.category in self.categories and bool(np.float32(candidate.score) >= np.float32(self.min_score))
+
     def choose(
         self, timestamp_ns: int, labels: npt.NDArray[np.unsignedinteger], candidates: Collection[Candidate]
     ) -> Instances:
@@ -72,10 +77,8 @@ class InstanceFilter:
         """
         shown = np.zeros(labels.shape, dtype=np.uint32)
         kept = []
-        # Scores travel as 32 bits: one that is on the edge must fall on the same side when it was recorded.
-        min_score = np.float32(self.min_score)
         for candidate in candidates:
-            if candidate.category not in self.categories or np.float32(candidate.score) < min_score:
+            if not self.takes(candidate):
                 continue
             mask = labels == candidate.label
             x, y, width, height = cv2.boundingRect(mask.view(np.uint8))

@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.progress import Progress
 
 from services.cli.train.training_data import parse_training_data, read_samples
-from services.runtime.config.segmenter import SegmenterConfig
 from services.runtime.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
 
 MODEL_NAME, CURVES_NAME = "model.safetensors", "curves.png"
 _MULTIPLE_PX = 32
+_CATEGORIES = ("person", "bicycle", "car", "motorcycle", "bus", "train", "truck")
+"""What a drive meets."""
 _SIZES = ("448x224", "352x288", "512x192")
 
 
@@ -34,7 +35,7 @@ def segmenter(
         list[str] | None, typer.Option(metavar="DATA", help="Judge by these at every save; may be repeated.")
     ] = None,
     category: Annotated[
-        list[str] | None, typer.Option(help="What to learn; may be repeated (default: segmenter.categories).")
+        list[str] | None, typer.Option(help=f"What to learn; may be repeated (default: {', '.join(_CATEGORIES)}).")
     ] = None,
     variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-compact_r18",
     start_from: Annotated[
@@ -83,7 +84,7 @@ def segmenter(
     if threads is not None:
         torch.set_num_threads(threads)
         cv2.setNumThreads(threads)
-    categories = tuple(category or SegmenterConfig.model_fields["categories"].get_default())
+    categories = tuple(category or _CATEGORIES)
     samples = read_samples([parse_training_data(text) for text in data], categories)
     validation = Validation([parse_training_data(text) for text in validate or ()], categories, VARIANTS[variant])
     out.mkdir(parents=True, exist_ok=True)

@@ -14,17 +14,35 @@ class SegmenterConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    backend: Literal["auto", "masks", "recorded", "truth", "none"] = Field(
+    backend: Literal["auto", "masks", "recorded", "solov2", "truth", "none"] = Field(
         "auto",
-        description="masks: label images beside the input; recorded: those of the session that is the input; truth: "
-        "the simulator's; none: every frame is left out; auto: the first of these that the input has",
+        description="masks: label images beside the input; recorded: those of the session that is the input; solov2: a "
+        "network's; truth: the simulator's; none: every frame is left out; auto: the first of these that there is",
     )
     instances: Path | None = Field(
         None, description="folder of label images and instances.json; <input>/instances when not given"
     )
+    weights: str | None = Field(
+        None,
+        min_length=1,
+        description="solov2: a file (.safetensors) or a name of `kinemap weights`; when not given, a public model in "
+        "the cache, else what comes with this package",
+    )
+    device: str = Field("auto", description="solov2: cpu, cuda, or auto: cuda where there is one")
+    precision: Literal["auto", "fp32", "bf16", "fp16"] = Field(
+        "auto", description="solov2: auto takes 16 bits where the device multiplies them by itself"
+    )
+    threads: int = Field(1, ge=1, le=256, description="solov2: threads of the network on a CPU")
+    every: int | None = Field(
+        None,
+        ge=1,
+        le=1000,
+        description="segment every so manieth frame, carry the masks over the others; when not given, every one "
+        "(lossless) or as many as there is time for (realtime)",
+    )
     min_score: float = Field(0.3, ge=0, le=1, description="instances of a lower score are left out")
     categories: tuple[str, ...] = Field(
-        ("person", "bicycle", "car", "motorcycle", "bus", "train", "truck"),
+        ("person", "bicycle", "car", "motorcycle", "bus", "train", "truck", "dog", "cat"),
         description="what is potentially dynamic, by COCO's names",
     )
 

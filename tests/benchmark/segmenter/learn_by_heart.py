@@ -18,7 +18,6 @@ from services.cli.train.training_data import parse_training_data, read_samples
 from services.evaluation.instance_masks.average_precision import mask_precision
 from services.formats.coco import CocoAnnotation, CocoCategory, CocoDataset, CocoImage, CocoResult
 from services.formats.rle import encode_mask
-from services.runtime.config.segmenter import SegmenterConfig
 from services.segmenter.solov2.instances import instances_of
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.preprocessing import normalized
@@ -62,7 +61,7 @@ def _sections(folders: list[str], count: int, size: tuple[int, int], box: tuple[
 
 
 def _categories() -> tuple[str, ...]:
-    return tuple(SegmenterConfig.model_fields["categories"].get_default())
+    return ("person", "bicycle", "car", "motorcycle", "bus", "train", "truck")
 
 
 def _truth(samples: list[Sample]) -> CocoDataset:

@@ -8,8 +8,18 @@ from pathlib import Path
 import pytest
 
 from services.cli import doctor_checks, doctor_packages
-from services.cli.doctor_checks import check_disk, check_gpu, check_import, check_memory, check_port, check_python
+from services.cli.doctor_checks import (
+    check_disk,
+    check_gpu,
+    check_import,
+    check_memory,
+    check_port,
+    check_python,
+    check_segmenter,
+)
 from services.cli.doctor_packages import check_debian_packages, check_python_packages
+from services.runtime.config import Config
+from services.segmenter.weights import choice
 
 
 def test_this_machine_can_run_python_and_has_what_is_installed() -> None:
@@ -75,3 +85,23 @@ def test_a_kinemap_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch
 def test_an_old_python_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "version_info", (3, 10, 4, "final", 0))
     assert check_python().ok is False
+
+
+def test_the_network_that_runs_is_named_with_its_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(choice, "SHIPPED_WEIGHTS", tmp_path / "none")
+    config = Config()
+    assert check_segmenter(config).ok is None
+    assert "kinemap weights pull solov2-light_r18" in check_segmenter(config).found
+    config.segmenter.backend = "solov2"
+    assert check_segmenter(config).ok is False
+    model = tmp_path / "kinemap" / "weights" / "solov2-light_r18_fpn_ms-3x_coco.safetensors"
+    model.parent.mkdir(parents=True)
+    model.touch()
+    assert check_segmenter(config).found == f"{model} (a public model in the cache)"
+    config.segmenter.weights = "solov2_r50"
+    missing = check_segmenter(config)
+    assert missing.ok is False
+    assert "`kinemap weights pull solov2_r50_fpn_ms-3x_coco` gets them" in missing.found
+    config.segmenter.backend, config.segmenter.weights = "masks", None
+    assert "not used: segmenter.backend is masks" in check_segmenter(config).found
