@@ -10,7 +10,7 @@ from rich.console import Console
 from services.cli.ports import gateway_url
 from services.cli.progress_view import progress_view
 from services.cli.run_progress import RunProgress
-from services.cli.run_results import export_results, print_summary, report_results
+from services.cli.run_results import export_results, print_summary, report_results, saved_map_row
 from services.cli.run_watch import WATCHED_TOPICS, RunWatch
 from services.evaluation.run.outcome import Report, RunOutcome
 from services.runtime.bus import Bus
@@ -55,6 +55,7 @@ class PipelineRun:
 
     def __post_init__(self) -> None:
         self.progress = RunProgress(total=self.frames)
+        self._began_s = time.time()
         self._subscription = self.bus.subscribe(WATCHED_TOPICS)
         self._watch = RunWatch(self._subscription, self.progress, self.services.failure, self.config.run.session)
 
@@ -116,7 +117,9 @@ class PipelineRun:
             self.console.print(f"no report: {result_error}", highlight=False, soft_wrap=True)
             return None
         if report is not None and report["frames"]["in"]:
-            print_summary(self.console, report, folder)
+            save_map = self.config.slam.save_map
+            saved = [] if save_map is None else [saved_map_row(save_map, self._began_s)]
+            print_summary(self.console, report, folder, *saved)
         return report
 
     def _incomplete(self, report: Report | None) -> KinemapError | None:

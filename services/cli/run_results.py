@@ -62,14 +62,22 @@ def read_usage(path: Path) -> dict[str, ServiceUsage]:
         raise InputError(f"{path}: not what a run keeps of its services ({error})") from None
 
 
-def print_summary(console: Console, report: Report, folder: Path) -> None:
-    """The summary as a table; in a log, which has no width, in long lines."""
+def saved_map_row(path: Path, began_s: float) -> tuple[str, str]:
+    """What the summary says of the file of --save-map, after a run that began at `began_s` of the system's clock."""
+    # A file's time lags some milliseconds behind the clock.
+    if not path.is_file() or path.stat().st_mtime < began_s - 1:
+        return "map saved", f"none: {path} was not written"
+    return "map saved", f"{path}  (to begin in it: --map {path})"
+
+
+def print_summary(console: Console, report: Report, folder: Path, *more: tuple[str, str]) -> None:
+    """The summary as a table, with `more` rows; in a log, which has no width, in long lines."""
     if not console.is_terminal:
         console.width = _LOG_WIDTH
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    for what, value in summary_rows(report):
+    for what, value in (*summary_rows(report), *more):
         table.add_row(what, value)
     table.add_row("folder", str(folder))
     console.print(table, highlight=False)

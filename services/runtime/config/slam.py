@@ -60,7 +60,7 @@ class SlamConfig(BaseModel):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if self.localize_only and self.map_file is None:
-            raise ValueError("localize_only needs a map_file to find the camera in")
+            raise ValueError("localize_only (--localize-only) needs a map_file (--map FILE) to find the camera in")
         if self.localize_only and self.save_map is not None:
-            raise ValueError("localize_only changes no map, so there is none for save_map")
+            raise ValueError("localize_only (--localize-only) changes no map: none for save_map (--save-map)")
         return self

@@ -39,8 +39,8 @@ def test_what_cannot_be_is_one_line_that_names_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("settings", "expected"),
     [
-        (["slam.localize_only=true"], "localize_only needs a map_file"),
-        (["slam.localize_only=true", "slam.map_file=a", "slam.save_map=b"], "there is none for save_map"),
+        (["slam.localize_only=true"], r"--localize-only.* needs a map_file \(--map FILE\)"),
+        (["slam.localize_only=true", "slam.map_file=a", "slam.save_map=b"], r"none for save_map \(--save-map\)"),
     ],
 )
 def test_localising_needs_a_map_and_leaves_none(settings: list[str], expected: str) -> None:

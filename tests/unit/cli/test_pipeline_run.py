@@ -3,6 +3,7 @@
 
 import io
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -85,10 +86,10 @@ class PlayedServices:
 class Stage:
     """A run on played services, and what it printed."""
 
-    def __init__(self, out: Path, **played: int) -> None:
+    def __init__(self, out: Path, save_map: Path | None = None, **played: int) -> None:
         out.mkdir(exist_ok=True)
         network = FakeNetwork()
-        config = load_config(None, {"run": {"out": out, "session": SESSION}})
+        config = load_config(None, {"run": {"out": out, "session": SESSION}, "slam": {"save_map": save_map}})
         self.folder = out
         self.services = PlayedServices(config, FakeBus(network), **played)
         self._text = io.StringIO()
@@ -112,6 +113,23 @@ def test_a_whole_run_ends_with_a_report_plots_and_a_summary(tmp_path: Path) -> N
     assert {path.name for path in (tmp_path / "plots").iterdir()} == {"map.png", "stage_times.png", "density.png"}
     assert "8 of 8 in, 8 tracked, 0 lost" in stage.printed
     assert stage.services.calls == ["up", "down", "down"]
+
+
+def test_the_summary_says_where_the_map_went(tmp_path: Path) -> None:
+    saved = tmp_path / "town.kmap"
+    stage = Stage(tmp_path / "saves", save_map=saved)
+    stage.services.on_up = saved.touch
+    stage.run.drive(serve=False)
+    assert f"map saved {saved}" in " ".join(stage.printed.split())
+
+
+def test_the_summary_says_that_a_map_was_not_written(tmp_path: Path) -> None:
+    old = tmp_path / "town.kmap"
+    old.touch()
+    os.utime(old, (1.0, 1.0))
+    stage = Stage(tmp_path / "saves_not", save_map=old)
+    stage.run.drive(serve=False)
+    assert "was not written" in stage.printed
 
 
 def test_a_frame_that_slam_never_answered_fails_the_run(tmp_path: Path) -> None:

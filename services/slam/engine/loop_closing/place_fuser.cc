@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "map/lasting.h"
+
 namespace kinemap {
 namespace {
 

@@ -27,19 +27,6 @@ std::vector<LandmarkMatch> NearestOfEach(const std::vector<LandmarkMatch>& match
 
 }  // namespace
 
-std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<LandmarkId> landmarks;
-  for (const KeyframeId keyframe_id : keyframes) {
-    for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
-      const Landmark* landmark = map.FindLandmark(id);
-      if (landmark != nullptr && IsLasting(*landmark)) landmarks.push_back(landmark->id);
-    }
-  }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
-  return landmarks;
-}
-
 KeypointsByNode::KeypointsByNode(const SlamMap& map, const Keyframe& keyframe, const BagOfWords& bag)
     : features_(keyframe.features) {
   for (size_t i = 0; i < keyframe.landmark_ids.size(); ++i) {

@@ -18,9 +18,6 @@ struct LandmarkMatch {
   int distance;  ///< between the descriptors, in bits
 };
 
-/// Lasting landmarks of these keyframes, ascending.
-std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes);
-
 /// A keyframe's keypoints that observe lasting landmarks, by the vocabulary node they fall under.
 class KeypointsByNode {
  public:

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "features/object_labels.h"
 #include "map/landmark.h"
+#include "map/slam_map.h"
 
 namespace kinemap {
 
@@ -15,5 +18,8 @@ inline bool IsLasting(const Landmark& landmark) {
 inline bool IsLasting(const FeatureLabel& label) {
   return label.role == FeatureRole::kTracked && label.state == MotionState::kStatic;
 }
+
+/// Such landmarks that these keyframes observe, ascending.
+std::vector<LandmarkId> LastingLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes);
 
 }  // namespace kinemap

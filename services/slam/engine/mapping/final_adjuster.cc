@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace kinemap {
@@ -24,14 +25,20 @@ double FinalAdjuster::Adjust(SlamMap* map) const {
 }
 
 BundleProblem FinalAdjuster::Solve(BundleProblem problem, const std::atomic<bool>* cancelled) const {
+  if (options_.bundle.radial_sigma == 0 || MeasuresDepth(problem)) {
+    SolveBundle(camera_, options_.bundle, &problem, cancelled);
+    return problem;
+  }
+  BundleOptions bending = options_.bundle, straight = options_.bundle;
+  straight.radial_sigma = 0;
   BundleProblem bent = problem;
-  SolveBundle(camera_, options_.bundle, &bent, cancelled);
-  if (options_.bundle.radial_sigma == 0 || MeasuresDepth(problem)) return bent;
-  BundleOptions options = options_.bundle;
-  options.radial_sigma = 0;
-  SolveBundle(camera_, options, &problem, cancelled);
+  SolveBundleRobustly(camera_, bending, &bent, cancelled);
+  SolveBundleRobustly(camera_, straight, &problem, cancelled);
   const bool explains = bent.robust_cost <= (1 - options_.least_explained) * problem.robust_cost;
-  return explains ? bent : problem;
+  // Outliers are left out only where it is known which camera they are outliers of.
+  if (explains) problem = std::move(bent);
+  SolveBundleWithoutOutliers(camera_, explains ? bending : straight, &problem, cancelled);
+  return problem;
 }
 
 }  // namespace kinemap

@@ -73,8 +73,18 @@ void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
 
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
                  const std::atomic<bool>* cancelled) {
+  SolveBundleRobustly(camera, options, problem, cancelled);
+  SolveBundleWithoutOutliers(camera, options, problem, cancelled);
+}
+
+void SolveBundleRobustly(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                         const std::atomic<bool>* cancelled) {
   problem->robust_cost = Minimize(camera, options, true, problem, cancelled);
   MarkOutliers(camera, problem);
+}
+
+void SolveBundleWithoutOutliers(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                                const std::atomic<bool>* cancelled) {
   if (options.final_iterations == 0) return;
   Minimize(camera, options, false, problem, cancelled);
   MarkOutliers(camera, problem);

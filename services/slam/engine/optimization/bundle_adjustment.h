@@ -75,4 +75,10 @@ struct BundleOptions {
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
                  const std::atomic<bool>* cancelled = nullptr);
 
+/// Its two halves: the robust iterations, after which outliers are marked, and the quadratic ones without them.
+void SolveBundleRobustly(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                         const std::atomic<bool>* cancelled = nullptr);
+void SolveBundleWithoutOutliers(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
+                                const std::atomic<bool>* cancelled = nullptr);
+
 }  // namespace kinemap

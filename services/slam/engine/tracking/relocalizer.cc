@@ -5,7 +5,8 @@
 
 #include "features/node_matcher.h"
 #include "geometry/absolute_pose.h"
-#include "tracking/static_search.h"
+#include "map/lasting.h"
+#include "tracking/landmark_projection.h"
 
 namespace kinemap {
 namespace {
@@ -95,10 +96,10 @@ bool Relocalizer::TryKeyframe(const SlamMap& map, KeyframeId keyframe_id, const 
   if (solver_.Solve(map, frame).inliers < options_.least_ransac_inliers) return false;
   std::vector<KeyframeId> around = map.covisibility().Neighbors(keyframe_id, kNeighbors);
   around.insert(around.begin(), keyframe_id);
-  const std::vector<LandmarkId> landmarks = StaticLandmarks(map, around);
+  const std::vector<LandmarkId> landmarks = LastingLandmarks(map, around);
   int inliers = 0;
   for (const double radius_px : {kWideRadiusPx, kNarrowRadiusPx}) {
-    ProjectStaticLandmarks(map, camera_, landmarks, radius_px, kMaxHammingDistance, frame);
+    ProjectLandmarks(map, camera_, landmarks, radius_px, kMaxHammingDistance, frame);
     inliers = solver_.Solve(map, frame).inliers;
     if (inliers < options_.least_ransac_inliers) return false;
   }

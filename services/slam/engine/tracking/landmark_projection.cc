@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tracking/static_search.h"
+#include "tracking/landmark_projection.h"
 
 #include <set>
 
@@ -12,21 +12,8 @@ constexpr double kRatio = 0.9;
 
 }  // namespace
 
-std::vector<LandmarkId> StaticLandmarks(const SlamMap& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<LandmarkId> landmarks;
-  std::set<LandmarkId> seen;
-  for (const KeyframeId keyframe_id : keyframes) {
-    for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
-      const Landmark* landmark = map.FindLandmark(id);
-      if (landmark == nullptr || !IsLasting(*landmark)) continue;
-      if (seen.insert(landmark->id).second) landmarks.push_back(landmark->id);
-    }
-  }
-  return landmarks;
-}
-
-int ProjectStaticLandmarks(const SlamMap& map, const CameraModel& camera, const std::vector<LandmarkId>& landmarks,
-                           double radius_px, int max_distance, Frame* frame) {
+int ProjectLandmarks(const SlamMap& map, const CameraModel& camera, const std::vector<LandmarkId>& landmarks,
+                     double radius_px, int max_distance, Frame* frame) {
   const std::set<LandmarkId> already(frame->landmark_ids.begin(), frame->landmark_ids.end());
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
