@@ -11,7 +11,7 @@ struct LensFinderOptions {
   int first_keyframes = 20;    ///< of a map that is looked at first
   double growth = 1.3;         ///< by which it must have grown before it is looked at again
   double growth_believed = 2;  ///< the same after a look that found something
-  int most_keyframes = 120;    ///< a larger map takes too long
+  int most_keyframes = 80;     ///< a larger map takes too long
   int shortest_delay_frames = 10;
   int observations_per_frame = 1500;
   bool wait = true;  ///< false: a solution is due only once it is there

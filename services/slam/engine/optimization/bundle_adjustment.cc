@@ -54,6 +54,15 @@ double Minimize(const CameraModel& camera, const BundleOptions& options, bool ro
   return cost;
 }
 
+/// A point behind a camera that sees it has an error without bound, which would drown all others.
+void LeaveOutWhatIsBehind(BundleProblem* bundle) {
+  for (BundleObservation& observation : bundle->observations) {
+    const Eigen::Vector3d point =
+        bundle->cameras[observation.camera].camera_from_map * bundle->points[observation.point].position_in_map;
+    observation.outlier = point.z() <= 0;
+  }
+}
+
 void MarkOutliers(const CameraModel& camera, BundleProblem* bundle) {
   for (BundleObservation& observation : bundle->observations) {
     const Eigen::Vector3d point =
@@ -79,6 +88,7 @@ void SolveBundle(const CameraModel& camera, const BundleOptions& options, Bundle
 
 void SolveBundleRobustly(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
                          const std::atomic<bool>* cancelled) {
+  LeaveOutWhatIsBehind(problem);
   problem->robust_cost = Minimize(camera, options, true, problem, cancelled);
   MarkOutliers(camera, problem);
 }

@@ -8,7 +8,7 @@ namespace kinemap {
 namespace {
 
 // Dense work grows with the cube of the blocks; the system of a whole map is mostly empty.
-constexpr int kMostDenseBlocks = 60;
+constexpr int kMostDenseBlocks = 80;
 
 }  // namespace
 

@@ -172,7 +172,7 @@ TEST_F(Bundle, FindsNoRadialDistortionWhereThereIsNone) {
 
 TEST_F(Bundle, SparseSystemOfManyCamerasGivesTheSame) {
   // The same scene again and again, each with cameras and points of its own.
-  constexpr int kCopies = 25;
+  constexpr int kCopies = 40;
   const int cameras = static_cast<int>(problem_.cameras.size()), points = static_cast<int>(problem_.points.size());
   Disturb();
   const BundleProblem one = problem_;
@@ -189,6 +189,17 @@ TEST_F(Bundle, SparseSystemOfManyCamerasGivesTheSame) {
   for (size_t i = 0; i < problem_.cameras.size(); ++i) {
     EXPECT_LT((problem_.cameras[i].camera_from_map.Matrix() - truth_[i % cameras].Matrix()).norm(), 1e-4) << i;
   }
+}
+
+TEST_F(Bundle, PointBehindACameraDoesNotDrownTheOthers) {
+  Disturb();
+  problem_.points[7].position_in_map = {0.5, 0, -3};
+  SolveBundle(TestCamera(), {10, 20, 1e-8}, &problem_);
+  EXPECT_LT(problem_.robust_cost, 1);
+  for (const BundleObservation& observation : problem_.observations) {
+    EXPECT_EQ(observation.outlier, observation.point == 7);
+  }
+  EXPECT_LT((problem_.cameras[4].camera_from_map.Matrix() - truth_[4].Matrix()).norm(), 1e-4);
 }
 
 TEST_F(Bundle, SpeedHoldsACameraThatSeesLittle) {
