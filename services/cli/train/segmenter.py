@@ -86,7 +86,8 @@ def segmenter(
         cv2.setNumThreads(threads)
     categories = tuple(category or _CATEGORIES)
     samples = read_samples([parse_training_data(text) for text in data], categories)
-    validation = Validation([parse_training_data(text) for text in validate or ()], categories, VARIANTS[variant])
+    judged_by = [parse_training_data(text) for text in validate or ()]
+    validation = Validation(judged_by, categories, VARIANTS[variant].test_size)
     out.mkdir(parents=True, exist_ok=True)
     options = TrainingOptions(
         variant=variant,
@@ -168,7 +169,7 @@ def _train(trainer: "Trainer", validation: "Validation", out: Path, save_every: 
                 since = [value for step, value in trainer.curves[name] if step > begun]
                 said += f", {name} {sum(since) / len(since):.3f}"
             if trainer.step == steps or begun // validate_every < trainer.step // validate_every:
-                for name, value in validation.judge(trainer).items():
+                for name, value in validation.judge(trainer.averaged_network()).items():
                     trainer.curves.setdefault(name, []).append([trainer.step, value])
                     said += f", {name} {value:.3f}"
             console.print(said, highlight=False)

@@ -1,64 +1,94 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How good a network is that is being trained: mask AP on data it does not learn from."""
+"""How good a network is: mask AP on data it does not learn from."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from services.cli.train.training_data import TrainingData
-from services.formats.coco import CocoDataset, CocoResult, read_coco
+from services.formats.coco import CocoDataset, CocoImage, CocoResult, read_coco
 from services.formats.rle import encode_mask
+from services.runtime.errors import InputError
 
 if TYPE_CHECKING:
+    from services.evaluation.instance_masks.average_precision import MaskPrecision
     from services.segmenter.solov2.network import SoloV2
-    from services.segmenter.solov2.variants import Variant
-    from services.segmenter.training.trainer import Trainer
 
 
 class Validation:
-    """Reads the data once; raises InputError for what is not as COCO says."""
+    """All the data as one set, read once.
 
-    def __init__(self, data: Sequence[TrainingData], categories: tuple[str, ...], variant: Variant) -> None:
-        self._sets = [(item, read_coco(item.annotations)) for item in data]
-        self._categories = categories
-        self._box = variant.test_size
+    Args:
+        data: where it lies.
+        categories: names, in the order of the network's outputs; others do not count.
+        box: (width, height) that images are fitted into.
 
-    def judge(self, trainer: Trainer) -> dict[str, float]:
-        """Mean AP and AP50 over all categories and sets, by the curve's name; nothing where there is no data."""
-        if not self._sets:
+    Raises:
+        InputError: what is not as COCO says, or two files that number the categories differently.
+    """
+
+    def __init__(self, data: Sequence[TrainingData], categories: tuple[str, ...], box: tuple[int, int]) -> None:
+        self._truth, self._paths = _joined(data)
+        self._box = box
+        number_of = {category.name: category.category_id for category in self._truth.categories}
+        self._numbers = [number_of.get(name) for name in categories]
+        present = {annotation.category_id for annotation in self._truth.annotations}
+        self._asked = [number for number in self._numbers if number in present]
+
+    def judge(self, network: SoloV2) -> dict[str, float]:
+        """Mean AP and AP50, and those of each category, by the curve's name; nothing where there is no data."""
+        if not self._asked:
             return {}
-        network = trainer.averaged_network()
-        scores = [self._score(network, item, truth) for item, truth in self._sets]
-        return {
-            "mask AP": sum(ap for ap, _ in scores) / len(scores),
-            "mask AP50": sum(ap50 for _, ap50 in scores) / len(scores),
-        }
+        score = self.precision(network)
+        sides = {"mask": score.mean, **score.by_category}
+        named = {f"{name} AP": side.ap for name, side in sides.items()}
+        named |= {f"{name} AP50": side.ap50 for name, side in sides.items()}
+        return {name: value or 0.0 for name, value in named.items()}
 
-    def _score(self, network: SoloV2, item: TrainingData, truth: CocoDataset) -> tuple[float, float]:
+    def precision(self, network: SoloV2) -> MaskPrecision:
+        """Average precision of the categories that the data have. Raises InputError where they have none."""
         from services.evaluation.instance_masks.average_precision import mask_precision
 
-        ids = [category.category_id for category in truth.categories if category.name in self._categories]
-        present = {annotation.category_id for annotation in truth.annotations}
-        mean = mask_precision(truth, self._found(network, item, truth), [i for i in ids if i in present]).mean
-        return mean.ap or 0.0, mean.ap50 or 0.0
+        return mask_precision(self._truth, self._found(network), [i for i in self._asked if i is not None])
 
-    def _found(self, network: SoloV2, item: TrainingData, truth: CocoDataset) -> list[CocoResult]:
+    def _found(self, network: SoloV2) -> list[CocoResult]:
         import cv2
         import numpy as np
 
         from services.segmenter.inference import TorchInference
 
         inference = TorchInference(network, self._box)
-        id_by_name = {category.name: category.category_id for category in truth.categories}
-        ids = [id_by_name.get(name) for name in self._categories]
         found = []
-        for image in truth.images:
-            pixels = cv2.imread(str(item.images / image.file_name))
+        for image in self._truth.images:
+            pixels = cv2.imread(str(self._paths[image.image_id]))
+            if pixels is None:
+                raise InputError(f"{self._paths[image.image_id]}: no readable image, expected one to judge by")
             instances = inference.segment(np.asarray(pixels, np.uint8))
             masks, labels = instances.masks.cpu().numpy(), instances.labels.tolist()
             for mask, label, score in zip(masks, labels, instances.scores.tolist(), strict=True):
-                number = ids[label]
+                number = self._numbers[label]
                 if number is not None:
                     found.append(CocoResult(image.image_id, number, encode_mask(mask), score))
         return found
+
+
+def _joined(data: Sequence[TrainingData]) -> tuple[CocoDataset, dict[int, Path]]:
+    """One data set of all, its images numbered anew, and where each lies."""
+    images: list[CocoImage] = []
+    annotations = []
+    paths = {}
+    categories = None
+    for item in data:
+        read = read_coco(item.annotations)
+        if categories is not None and read.categories != categories:
+            raise InputError(f"{item.annotations}: other categories than {data[0].annotations}, expected the same")
+        categories = read.categories
+        number_of = {image.image_id: len(images) + place for place, image in enumerate(read.images, start=1)}
+        for image in read.images:
+            images.append(replace(image, image_id=number_of[image.image_id]))
+            paths[images[-1].image_id] = item.images / image.file_name
+        annotations += [replace(row, image_id=number_of[row.image_id]) for row in read.annotations]
+    return CocoDataset(tuple(images), categories or (), tuple(annotations)), paths

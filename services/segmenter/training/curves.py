@@ -9,6 +9,7 @@ import numpy as np
 Curves = Mapping[str, Sequence[Sequence[float]]]
 """By name, [step, value] each."""
 
+_PANELS_A_ROW = 4
 _SMOOTHED = 50
 """Points that the drawn line is the mean of."""
 
@@ -19,10 +20,12 @@ def draw_curves(curves: Curves, path: Path) -> None:
     from matplotlib.figure import Figure
 
     shown = {name: np.asarray(points, float) for name, points in curves.items() if points}
-    figure = Figure(figsize=(4.5 * max(1, len(shown)), 3.6), layout="constrained")
+    columns = max(1, min(_PANELS_A_ROW, len(shown)))
+    rows = max(1, -(-len(shown) // columns))
+    figure = Figure(figsize=(4.5 * columns, 3.6 * rows), layout="constrained")
     FigureCanvasAgg(figure)
     for number, (name, points) in enumerate(shown.items()):
-        axes = figure.add_subplot(1, len(shown), number + 1)
+        axes = figure.add_subplot(rows, columns, number + 1)
         few = len(points) < 4 * _SMOOTHED
         axes.plot(points[:, 0], points[:, 1], color="C0", alpha=1.0 if few else 0.2, linewidth=1.0)
         if not few:

@@ -96,6 +96,7 @@ def main() -> None:
     parser.add_argument("--batch", type=int, default=8)
     parser.add_argument("--rate", type=float, default=1e-3)
     parser.add_argument("--variant", default="solov2-compact_r18")
+    parser.add_argument("--precision", default="auto")
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     size = (256, 160)
@@ -112,6 +113,7 @@ def main() -> None:
         peak_learning_rate=arguments.rate,
         warm_up=20,
         cool_down=arguments.steps // 3,
+        precision=arguments.precision,
     )
     with tempfile.TemporaryDirectory() as folder:
         trainer = Trainer(options, _Few(samples), Path(folder), torch.device("cpu"), augmentation=_Unchanged())
