@@ -27,7 +27,10 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
         import torch
     except ImportError:
         raise ResourceError("segmenter.backend solov2 needs torch: pip install kinemap[segmenter]") from None
-    from services.segmenter.inference import TorchInference, TorchOptions, fastest_precision
+    from services.segmenter.fastest import fastest
+    from services.segmenter.inference import TorchInference, TorchOptions, precisions
+    from services.segmenter.processor import processor_name
+    from services.segmenter.solov2.folding import folded
     from services.segmenter.solov2.instances import InstanceOptions
     from services.segmenter.weights.model_file import load_network
 
@@ -36,7 +39,16 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
     network, description = load_network(model.path)
     _require_known(settings.categories, description.categories, str(model.path))
     device = _device(settings.device)
-    precision = fastest_precision(device) if settings.precision == "auto" else settings.precision
+    options = InstanceOptions(min_score=settings.min_score)
+    ready = folded(network)
+    asked = precisions(device) if settings.precision == "auto" else (settings.precision,)
+    ways: dict[str, TorchInference] = {
+        name: TorchInference(ready, description.input_box, options, TorchOptions(device, name)) for name in asked
+    }
+    box = description.input_box
+    machine = torch.cuda.get_device_name(device) if device.type == "cuda" else processor_name()
+    key = f"{description.variant} {box[0]}x{box[1]}, torch {torch.__version__}, {machine}, {settings.threads} threads"
+    precision = fastest(key, ways, box) if len(ways) > 1 else next(iter(ways))
     _log.info(
         "network",
         file=model.path.name,
@@ -46,9 +58,7 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
         precision=precision,
         threads=settings.threads,
     )
-    options = InstanceOptions(min_score=settings.min_score)
-    inference = TorchInference(network, description.input_box, options, TorchOptions(device, precision))
-    return NetworkInstances(inference, description.categories, chosen)
+    return NetworkInstances(ways[precision], description.categories, chosen)
 
 
 def _device(name: str) -> "torch.device":

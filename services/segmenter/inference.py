@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One image through a network of ours, in torch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,11 +18,11 @@ from services.segmenter.solov2.preprocessing import prepare
 Precision = Literal["fp32", "bf16", "fp16"]
 
 
-def fastest_precision(device: torch.device) -> Precision:
-    """Numbers of 16 bits where the device multiplies them by itself."""
+def precisions(device: torch.device) -> tuple[Precision, ...]:
+    """What there is to choose from on a device, the exact one first."""
     if device.type == "cuda":
-        return "fp16"
-    return "bf16" if multiplies_bfloat16() else "fp32"
+        return ("fp32", "fp16")
+    return ("fp32", "bf16") if multiplies_bfloat16() else ("fp32",)
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class TorchInference:
         self._runtime = runtime or TorchOptions(next(network.parameters()).device)
         self._network = network.to(self._runtime.device).to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self._box = input_box
-        self._options = options or InstanceOptions()
+        self._options = replace(options or InstanceOptions(), least_area=network.variant.least_area)
 
     def segment(self, image: npt.NDArray[np.uint8]) -> SegmentedInstances:
         """The instances of an image, (H, W, 3) BGR or (H, W) grey, on the network's device."""

@@ -20,6 +20,8 @@ class InstanceOptions:
     """Which candidates become instances (mmdetection's test settings)."""
 
     min_category_score: float = 0.1
+    least_area: float = 1.0
+    """of a mask in elements of the mask features, by the stride of its level; what is smaller is left out"""
     mask_threshold: float = 0.5
     most_candidates: int = 500
     min_score: float = 0.05
@@ -62,7 +64,7 @@ def instances_of(
     soft = (kernels @ features.flatten(1)).view(-1, *features.shape[-2:]).sigmoid().float()
     hard = soft > options.mask_threshold
     areas = hard.sum((1, 2))
-    large = areas > strides
+    large = areas > options.least_area * strides
     scores, labels, soft, hard, areas = scores[large], labels[large], soft[large], hard[large], areas[large]
     # an unsure mask makes an unsure instance
     scores = scores * (soft * hard).sum((1, 2)) / areas

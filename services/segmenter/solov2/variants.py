@@ -19,6 +19,8 @@ class Variant:
     `scale_ranges_px`: the square root of an instance's area (box) that a level learns, one pair a level.
     `test_size`: the box (width, height) that an image is fitted into.
     `pyramid_channels`, `branch_channels`: of the feature pyramid and within the mask feature branch.
+    `least_area`: elements of the mask features that a mask must cover more of, by its level's stride; what is
+    smaller is no instance.
     """
 
     depth: int
@@ -29,6 +31,7 @@ class Variant:
     test_size: tuple[int, int]
     pyramid_channels: int = 256
     branch_channels: int = 128
+    least_area: float = 1.0
 
     @property
     def kernel_channels(self) -> int:
@@ -49,7 +52,9 @@ def _light(depth: int) -> Variant:
 
 
 def _compact(depth: int) -> Variant:
-    return Variant(depth, 2, 128, 64, _LIGHT_RANGES, (852, 448), pyramid_channels=128, branch_channels=64)
+    return Variant(
+        depth, 2, 128, 64, _LIGHT_RANGES, (852, 448), pyramid_channels=128, branch_channels=64, least_area=0.25
+    )
 
 
 VARIANTS: Final = MappingProxyType(

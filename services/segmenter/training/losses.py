@@ -32,7 +32,7 @@ def dice_loss(predicted: Tensor, targets: Tensor) -> Tensor:
 
     Args:
         predicted: (P, pixels) in 0..1.
-        targets: (P, pixels) 0 or 1.
+        targets: (P, pixels) in 0..1; the loss is least where both are equal, also between 0 and 1.
     """
     overlap = (predicted * targets).sum(1)
     return 1 - (2 * overlap + 1) / (predicted.square().sum(1) + targets.square().sum(1) + 1)

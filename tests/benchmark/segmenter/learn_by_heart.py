@@ -18,7 +18,7 @@ from services.cli.train.training_data import parse_training_data, read_samples
 from services.evaluation.instance_masks.average_precision import mask_precision
 from services.formats.coco import CocoAnnotation, CocoCategory, CocoDataset, CocoImage, CocoResult
 from services.formats.rle import encode_mask
-from services.segmenter.solov2.instances import instances_of
+from services.segmenter.solov2.instances import InstanceOptions, instances_of
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.preprocessing import normalized
 from services.segmenter.solov2.variants import VARIANTS
@@ -82,7 +82,7 @@ def _found(network: SoloV2, samples: list[Sample]) -> list[CocoResult]:
     for number, sample in enumerate(samples, start=1):
         size = (sample.image.shape[0], sample.image.shape[1])
         output = network(torch.from_numpy(normalized(sample.image))[None], grids_of(size[1], network.variant))
-        instances = instances_of(output, size, size)
+        instances = instances_of(output, size, size, InstanceOptions(least_area=network.variant.least_area))
         for mask, label, score in zip(instances.masks, instances.labels, instances.scores, strict=True):
             results.append(CocoResult(number, int(label) + 1, encode_mask(mask.numpy()), float(score)))
     return results

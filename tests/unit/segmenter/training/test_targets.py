@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import numpy as np
+import torch
+from torch.nn.functional import interpolate
 
 from services.segmenter.solov2.variants import GRIDS, VARIANTS
 from services.segmenter.training.sample import Sample
@@ -33,17 +35,27 @@ def test_cells_in_the_middle_of_the_instance_answer() -> None:
     assert (rows.min(), rows.max()) == (18, 20)
 
 
-def test_of_two_that_claim_a_cell_the_later_has_it() -> None:
-    targets = assign(_sample((100, 60, 40, 40, 1), (102, 62, 36, 36, 2)), LIGHT)
-    assert targets.categories[0][19, 15] == 2
-    assert targets.instances[0][19, 15] == 1
+def test_of_two_that_claim_a_cell_the_smaller_has_it() -> None:
+    boxes = ((100, 60, 40, 40, 1), (102, 62, 36, 36, 2))
+    for order in (boxes, boxes[::-1]):
+        targets = assign(_sample(*order), LIGHT)
+        assert targets.categories[0][19, 15] == 2
+        assert targets.instances[0][19, 15] == order.index(boxes[1])
 
 
-def test_masks_are_a_quarter_of_the_size_and_decide_by_the_majority() -> None:
+def test_masks_are_a_quarter_of_the_size_and_say_shares() -> None:
     targets = assign(_sample((4, 8, 10, 8, 0)), LIGHT)
     assert targets.masks.shape == (1, 40, 80)
-    rows, columns = np.nonzero(targets.masks[0])
-    assert (rows.min(), rows.max(), columns.min(), columns.max()) == (2, 3, 1, 3)
+    np.testing.assert_array_equal(targets.masks[0, 2, :5], [0, 1, 1, 0.5, 0])
+    assert targets.masks.sum() * 16 == 10 * 8
+
+
+def test_an_outline_between_the_elements_is_kept() -> None:
+    sample = _sample((101, 62, 38, 21, 0))
+    reduced = torch.from_numpy(assign(sample, LIGHT).masks)
+    enlarged = interpolate(reduced[None], scale_factor=4, mode="bilinear", align_corners=False)[0, 0] > 0.5
+    true = torch.from_numpy(sample.masks[0]) > 0
+    assert (enlarged & true).sum() / (enlarged | true).sum() > 0.95
 
 
 def test_no_instance_no_answer() -> None:
