@@ -2,13 +2,16 @@
 #include "optimization/reduced_camera_system.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
+#include <algorithm>
 
 namespace kinemap {
 namespace {
 
 // Dense work grows with the cube of the blocks; the system of a whole map is mostly empty.
 constexpr int kMostDenseBlocks = 80;
+
+/// Of a block's column, how many rows lie on or above the whole matrix's diagonal.
+int RowsAbove(int a, int b, int column) { return a == b ? column + 1 : 6; }
 
 }  // namespace
 
@@ -30,7 +33,7 @@ void ReducedCameraSystem::SetZero() {
   for (Vector6d& right : right_) right.setZero();
 }
 
-bool ReducedCameraSystem::Solve(std::vector<Vector6d>* solution) const {
+bool ReducedCameraSystem::Solve(std::vector<Vector6d>* solution) {
   Eigen::VectorXd stacked = StackedRight();
   if (!(size_ > kMostDenseBlocks ? SolveSparse(&stacked) : SolveDense(&stacked))) return false;
   solution->resize(size_);
@@ -55,22 +58,41 @@ bool ReducedCameraSystem::SolveDense(Eigen::VectorXd* stacked) const {
   return true;
 }
 
-bool ReducedCameraSystem::SolveSparse(Eigen::VectorXd* stacked) const {
+void ReducedCameraSystem::LayOut() {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(36 * blocks_.size());
-  for (size_t i = 0; i < blocks_.size(); ++i) {
-    const auto [a, b] = place_[i];
+  for (const auto& [a, b] : place_) {
     for (int column = 0; column < 6; ++column) {
-      for (int row = 0; row < (a == b ? column + 1 : 6); ++row) {
-        entries.emplace_back(6 * a + row, 6 * b + column, blocks_[i](row, column));
-      }
+      for (int row = 0; row < RowsAbove(a, b, column); ++row) entries.emplace_back(6 * a + row, 6 * b + column, 0);
     }
   }
-  Eigen::SparseMatrix<double> upper(6 * size_, 6 * size_);
-  upper.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> factor(upper);
-  if (factor.info() != Eigen::Success) return false;
-  *stacked = factor.solve(*stacked);
+  sparse_ = std::make_unique<SparseLayout>();
+  sparse_->upper.resize(6 * size_, 6 * size_);
+  sparse_->upper.setFromTriplets(entries.begin(), entries.end());
+  const int* begins = sparse_->upper.outerIndexPtr();
+  const int* rows = sparse_->upper.innerIndexPtr();
+  for (const auto& [a, b] : place_) {
+    std::array<int, 6>& starts = sparse_->starts.emplace_back();
+    for (int column = 0; column < 6; ++column) {
+      const int j = 6 * b + column;
+      starts[column] = static_cast<int>(std::lower_bound(rows + begins[j], rows + begins[j + 1], 6 * a) - rows);
+    }
+  }
+  sparse_->factor.analyzePattern(sparse_->upper);
+}
+
+bool ReducedCameraSystem::SolveSparse(Eigen::VectorXd* stacked) {
+  if (sparse_ == nullptr) LayOut();
+  double* values = sparse_->upper.valuePtr();
+  for (size_t i = 0; i < blocks_.size(); ++i) {
+    for (int column = 0; column < 6; ++column) {
+      const double* above = blocks_[i].col(column).data();
+      std::copy_n(above, RowsAbove(place_[i].first, place_[i].second, column), values + sparse_->starts[i][column]);
+    }
+  }
+  sparse_->factor.factorize(sparse_->upper);
+  if (sparse_->factor.info() != Eigen::Success) return false;
+  *stacked = sparse_->factor.solve(*stacked);
   return true;
 }
 

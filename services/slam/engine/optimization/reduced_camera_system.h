@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -26,19 +29,29 @@ class ReducedCameraSystem {
   Matrix6d& Block(int a, int b) { return blocks_[number_[a * size_ + b]]; }
   Vector6d& Right(int a) { return right_[a]; }
 
-  /// False where the matrix is not positive definite. Dense for few blocks, sparse for many; on one thread.
-  bool Solve(std::vector<Vector6d>* solution) const;
+  /// False where the matrix is not positive definite. Dense for few blocks, sparse for many; on one thread. No block
+  /// may be coupled after the first call.
+  bool Solve(std::vector<Vector6d>* solution);
 
  private:
   Eigen::VectorXd StackedRight() const;
   bool SolveDense(Eigen::VectorXd* stacked) const;
-  bool SolveSparse(Eigen::VectorXd* stacked) const;
+  bool SolveSparse(Eigen::VectorXd* stacked);
+  void LayOut();
+
+  /// What only the places of blocks decide.
+  struct SparseLayout {
+    Eigen::SparseMatrix<double> upper;
+    std::vector<std::array<int, 6>> starts;  ///< of the columns of each block among the values of `upper`
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> factor;
+  };
 
   int size_;
   std::vector<int> number_;                 // of block (a, b) at a * size + b; -1: there is none
   std::vector<std::pair<int, int>> place_;  // of the block of this number
   std::vector<Matrix6d> blocks_;
   std::vector<Vector6d> right_;
+  std::unique_ptr<SparseLayout> sparse_;
 };
 
 }  // namespace kinemap
