@@ -49,6 +49,9 @@ def segmenter(
         ),
     ] = None,
     steps: Annotated[int, typer.Option(min=1, help="Batches to learn from; may be more when it goes on.")] = 20_000,
+    warm_up: Annotated[
+        int | None, typer.Option(min=0, help="First steps, over which the rate rises (default: a tenth, 1000 at most).")
+    ] = None,
     cool_down: Annotated[
         int | None, typer.Option(min=0, help="Last steps, over which the rate falls (default: a fifth of all).")
     ] = None,
@@ -59,6 +62,9 @@ def segmenter(
         int | None, typer.Option(min=1, help="Steps between two judgements, at a save (default: at every one).")
     ] = None,
     workers: Annotated[int, typer.Option(min=0, help="Processes that prepare images (0: none beside this one).")] = 2,
+    min_height: Annotated[
+        float, typer.Option(min=0.0, max=65535.0, help="Height, px, of the true instances that a judgement is about.")
+    ] = 25.0,
     device: Annotated[str, typer.Option(help="cuda, cpu, or auto.")] = "auto",
     precision: Annotated[
         str, typer.Option(help="fp32, fp16 (CUDA), bf16, or auto: 16 bits where the processor multiplies them.")
@@ -87,7 +93,7 @@ def segmenter(
     categories = tuple(category or _CATEGORIES)
     samples = read_samples([parse_training_data(text) for text in data], categories)
     judged_by = [parse_training_data(text) for text in validate or ()]
-    validation = Validation(judged_by, categories, VARIANTS[variant].test_size)
+    validation = Validation(judged_by, categories, VARIANTS[variant].test_size, min_height)
     out.mkdir(parents=True, exist_ok=True)
     options = TrainingOptions(
         variant=variant,
@@ -96,7 +102,7 @@ def segmenter(
         steps=steps,
         batch=batch,
         peak_learning_rate=rate,
-        warm_up=min(1000, max(1, steps // 10)),
+        warm_up=min(1000, max(1, steps // 10)) if warm_up is None else warm_up,
         cool_down=steps // 5 if cool_down is None else cool_down,
         seed=seed,
         precision=cast(Precision, precision),
