@@ -23,6 +23,10 @@ class KeypointGrid {
   void FindNear(const Eigen::Vector2d& center_px, double radius_px, int min_octave, int max_octave,
                 std::vector<int>* found) const;
 
+  /// A grid of only the keypoints for which keep(index) is true.
+  template <typename Keep>
+  KeypointGrid Only(Keep keep) const;
+
   struct Entry {
     float x_px, y_px;
     int octave, index;
@@ -48,6 +52,24 @@ class KeypointGrid {
   std::vector<int> cell_start_;  // one a cell and one past the end
   std::vector<Entry> entries_;   // ordered by cell
 };
+
+template <typename Keep>
+KeypointGrid KeypointGrid::Only(Keep keep) const {
+  KeypointGrid kept;
+  kept.columns_ = columns_, kept.rows_ = rows_;
+  kept.low_x_px_ = low_x_px_, kept.low_y_px_ = low_y_px_;
+  kept.cell_start_.reserve(cell_start_.size());
+  kept.entries_.reserve(entries_.size());
+  size_t cell = 0;
+  for (size_t i = 0; i < entries_.size(); ++i) {
+    for (; cell < cell_start_.size() && cell_start_[cell] <= static_cast<int>(i); ++cell) {
+      kept.cell_start_.push_back(static_cast<int>(kept.entries_.size()));
+    }
+    if (keep(entries_[i].index)) kept.entries_.push_back(entries_[i]);
+  }
+  kept.cell_start_.resize(cell_start_.size(), static_cast<int>(kept.entries_.size()));
+  return kept;
+}
 
 template <typename Visit>
 void KeypointGrid::VisitAlong(const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px, double margin_px,

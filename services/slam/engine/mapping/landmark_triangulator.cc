@@ -24,6 +24,11 @@ bool MayMatch(const FeatureLabel& a, const FeatureLabel& b) {
   return a.role == FeatureRole::kTracked || (a.role == FeatureRole::kMapped && a.object_id == b.object_id);
 }
 
+bool IsFree(const Keyframe& keyframe, int keypoint) {
+  const FeatureRole role = keyframe.labels[keypoint].role;
+  return keyframe.landmark_ids[keypoint] == kNoId && (role == FeatureRole::kTracked || role == FeatureRole::kMapped);
+}
+
 std::vector<float> FarthestReaches(const FrameFeatures& features, const PyramidScales& scales) {
   double spread = 1;
   for (const Keypoint& keypoint : features.keypoints) spread = std::max(spread, keypoint.spread);
@@ -45,6 +50,7 @@ struct LandmarkTriangulator::Pair {
   Eigen::Vector2d epipole_px;  // the first camera's centre in the second image
   bool has_epipole;            // false when it lies behind the second camera
   double nearest_depth;
+  KeypointGrid free;            // the second image's keypoints that may become landmarks
   std::vector<float> reach_px;  // beside the line, of no keypoint of this octave in the second image more
 };
 
@@ -66,6 +72,7 @@ std::vector<LandmarkId> LandmarkTriangulator::Triangulate(SlamMap* map, Keyframe
                     has_epipole ? camera_.Project(second_from_first.translation) : Eigen::Vector2d::Zero(),
                     has_epipole,
                     options_.nearest_depth_ratio * median_depth,
+                    second.features->grid.Only([&](int j) { return IsFree(second, j); }),
                     FarthestReaches(*second.features, map->scales())};
     const std::vector<LandmarkId> of_pair = TriangulatePair(map, pair);
     made.insert(made.end(), of_pair.begin(), of_pair.end());
@@ -86,27 +93,26 @@ int LandmarkTriangulator::FindMatch(const Pair& pair, int keypoint, const std::v
   const Eigen::Vector3d epipolar = pair.fundamental * point.pixel_px.homogeneous();
   const Eigen::Vector3f line = (epipolar / epipolar.head<2>().norm()).cast<float>();
   int best = -1, best_distance = kStrictHammingDistance, rival_distance = kNoRival;
-  pair.second.features->grid.VisitAlong(
-      far_px, near_px, kMarginPx * point.spread, [&](const KeypointGrid::Entry& entry) {
-        // Most end here, before anything but the entry itself is read.
-        const float off_line = std::abs(line.x() * entry.x_px + line.y() * entry.y_px + line.z());
-        if (off_line >= pair.reach_px[entry.octave]) return;
-        const Keypoint& candidate = pair.second.features->keypoints[entry.index];
-        const double scale = pair.scales.scale(entry.octave) * candidate.spread;
-        if (off_line >= kEpipolarReach * scale || taken[entry.index]) return;
-        if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
-        const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
-        const bool elsewhere =
-            best < 0 || (candidate.pixel_px - pair.second.features->keypoints[best].pixel_px).norm() > kSameSpotPx;
-        if (distance >= best_distance) {
-          if (elsewhere) rival_distance = std::min(rival_distance, distance);
-          return;
-        }
-        if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
-        if (best >= 0 && elsewhere) rival_distance = best_distance;
-        best = entry.index;
-        best_distance = distance;
-      });
+  pair.free.VisitAlong(far_px, near_px, kMarginPx * point.spread, [&](const KeypointGrid::Entry& entry) {
+    // Most end here, before anything but the entry itself is read.
+    const float off_line = std::abs(line.x() * entry.x_px + line.y() * entry.y_px + line.z());
+    if (off_line >= pair.reach_px[entry.octave]) return;
+    const Keypoint& candidate = pair.second.features->keypoints[entry.index];
+    const double scale = pair.scales.scale(entry.octave) * candidate.spread;
+    if (off_line >= kEpipolarReach * scale || taken[entry.index]) return;
+    if (!MayMatch(pair.first.labels[keypoint], pair.second.labels[entry.index])) return;
+    const int distance = HammingDistance(descriptor, pair.second.features->descriptors[entry.index]);
+    const bool elsewhere =
+        best < 0 || (candidate.pixel_px - pair.second.features->keypoints[best].pixel_px).norm() > kSameSpotPx;
+    if (distance >= best_distance) {
+      if (elsewhere) rival_distance = std::min(rival_distance, distance);
+      return;
+    }
+    if (pair.has_epipole && (candidate.pixel_px - pair.epipole_px).squaredNorm() < kEpipoleBound * scale) return;
+    if (best >= 0 && elsewhere) rival_distance = best_distance;
+    best = entry.index;
+    best_distance = distance;
+  });
   return best_distance < kMatchRatio * rival_distance ? best : -1;
 }
 
@@ -133,13 +139,10 @@ bool LandmarkTriangulator::PointOfMatch(const SlamMap& map, const Pair& pair, in
 }
 
 std::vector<LandmarkId> LandmarkTriangulator::TriangulatePair(SlamMap* map, const Pair& pair) const {
-  std::vector<bool> taken(pair.second.features->size());
-  for (size_t j = 0; j < taken.size(); ++j) taken[j] = pair.second.landmark_ids[j] != kNoId;
+  std::vector<bool> taken(pair.second.features->size(), false);
   std::vector<LandmarkId> made;
   for (int i = 0; i < pair.first.features->size(); ++i) {
-    const FeatureRole role = pair.first.labels[i].role;
-    if (pair.first.landmark_ids[i] != kNoId || (role != FeatureRole::kTracked && role != FeatureRole::kMapped))
-      continue;
+    if (!IsFree(pair.first, i)) continue;
     const int match = FindMatch(pair, i, taken);
     Eigen::Vector3d in_first;
     if (match < 0 || !PointOfMatch(*map, pair, i, match, &in_first)) continue;

@@ -170,6 +170,26 @@ TEST(KeypointGrid, VisitsAllNearASegmentOnce) {
   }
 }
 
+TEST(KeypointGrid, OnlySomeAreTheSameWithoutTheOthers) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> x(0, 640), y(0, 480);
+  std::vector<Keypoint> keypoints(300);
+  for (Keypoint& keypoint : keypoints) keypoint.pixel_px = {x(random), y(random)};
+  const KeypointGrid grid(keypoints, {0, 0}, {640, 480});
+  const auto is_third = [](int index) { return index % 3 == 0; };
+  const KeypointGrid thirds = grid.Only(is_third), none = grid.Only([](int) { return false; });
+  for (int trial = 0; trial < 50; ++trial) {
+    const Eigen::Vector2d center(x(random), y(random));
+    std::vector<int> all, found, nothing;
+    grid.FindNear(center, 70, 0, 7, &all);
+    thirds.FindNear(center, 70, 0, 7, &found);
+    none.FindNear(center, 70, 0, 7, &nothing);
+    std::erase_if(all, [&](int index) { return !is_third(index); });
+    EXPECT_EQ(found, all);
+    EXPECT_TRUE(nothing.empty());
+  }
+}
+
 TEST(RotationConsistency, RejectsMatchesThatTurnDifferently) {
   RotationConsistency rotation;
   for (int i = 0; i < 50; ++i) rotation.Add(i, 350.0f, 20.0f);  // +30 degrees across the zero
