@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backend `solov2` as it is configured: model, device, precision."""
+"""Backend `solov2` as it is configured: model, device, precision. The model may be a Mask R-CNN, to compare with."""
 
 from typing import TYPE_CHECKING
 
@@ -7,11 +7,14 @@ from services.runtime.config.segmenter import SegmenterConfig
 from services.runtime.errors import InputError, ResourceError
 from services.runtime.log import get_logger
 from services.segmenter.backend import InstanceFilter
-from services.segmenter.network_instances import NetworkInstances
+from services.segmenter.network_instances import Inference, NetworkInstances
 from services.segmenter.weights.choice import choose_model
 
 if TYPE_CHECKING:
     import torch
+
+    from services.segmenter.inference import TorchOptions
+    from services.segmenter.networks import Network
 
 _log = get_logger("segmenter")
 
@@ -28,10 +31,9 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
     except ImportError:
         raise ResourceError("segmenter.backend solov2 needs torch: pip install kinemap[segmenter]") from None
     from services.segmenter.fastest import fastest
-    from services.segmenter.inference import TorchInference, TorchOptions, precisions
+    from services.segmenter.inference import TorchOptions, precisions
     from services.segmenter.processor import processor_name
     from services.segmenter.solov2.folding import folded
-    from services.segmenter.solov2.instances import InstanceOptions
     from services.segmenter.weights.model_file import load_network
 
     torch.set_num_threads(settings.threads)
@@ -39,13 +41,11 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
     network, description = load_network(model.path)
     _require_known(settings.categories, description.categories, str(model.path))
     device = _device(settings.device)
-    options = InstanceOptions(min_score=settings.min_score)
-    ready = folded(network)
+    ready, box = folded(network), description.input_box
     asked = precisions(device) if settings.precision == "auto" else (settings.precision,)
-    ways: dict[str, TorchInference] = {
-        name: TorchInference(ready, description.input_box, options, TorchOptions(device, name)) for name in asked
+    ways: dict[str, Inference] = {
+        name: inference_of(ready, box, settings.min_score, TorchOptions(device, name)) for name in asked
     }
-    box = description.input_box
     machine = torch.cuda.get_device_name(device) if device.type == "cuda" else processor_name()
     key = f"{description.variant} {box[0]}x{box[1]}, torch {torch.__version__}, {machine}, {settings.threads} threads"
     precision = fastest(key, ways, box) if len(ways) > 1 else next(iter(ways))
@@ -59,6 +59,18 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
         threads=settings.threads,
     )
     return NetworkInstances(ways[precision], description.categories, chosen)
+
+
+def inference_of(network: "Network", box: tuple[int, int], min_score: float, runtime: "TorchOptions") -> Inference:
+    """What runs a network; instances below `min_score` are left out."""
+    from services.segmenter.inference import TorchInference
+    from services.segmenter.mask_rcnn.inference import MaskRcnnInference
+    from services.segmenter.mask_rcnn.network import DetectionOptions, MaskRcnn
+    from services.segmenter.solov2.instances import InstanceOptions
+
+    if isinstance(network, MaskRcnn):
+        return MaskRcnnInference(network, box, DetectionOptions(min_score=min_score), runtime)
+    return TorchInference(network, box, InstanceOptions(min_score=min_score), runtime)
 
 
 def _device(name: str) -> "torch.device":

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """One image through a network of ours, in torch."""
 
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +34,12 @@ class TorchOptions:
     precision: Precision = "fp32"
 
 
+def autocast(runtime: TorchOptions) -> AbstractContextManager[Any]:
+    """Where products are computed in the numbers that are asked for."""
+    dtype = {"fp32": torch.float32, "bf16": torch.bfloat16, "fp16": torch.float16}[runtime.precision]
+    return torch.autocast(runtime.device.type, dtype, enabled=dtype != torch.float32)
+
+
 class TorchInference:
     """Runs a network, in evaluation mode. Nothing but the network itself is computed in fewer than 32 bits."""
 
@@ -56,12 +63,7 @@ class TorchInference:
             return instances_of(output, given.resized_hw, given.original_hw, self._options)
 
     def _run(self, images: Tensor) -> HeadOutput:
-        runtime = self._runtime
-        if runtime.precision == "fp32":
-            output: HeadOutput = self._network(images)
-            return output
-        dtype = torch.bfloat16 if runtime.precision == "bf16" else torch.float16
-        with torch.autocast(runtime.device.type, dtype):
-            output = self._network(images.contiguous(memory_format=torch.channels_last))
+        with autocast(self._runtime):
+            output: HeadOutput = self._network(images.contiguous(memory_format=torch.channels_last))
         kernels, categories = (tuple(level.float() for level in part) for part in (output.kernels, output.categories))
         return HeadOutput(kernels, categories, output.mask_features.float())

@@ -32,6 +32,14 @@ def instances(
             "baseline (default: the configured segmenter, or DATA/instances)."
         ),
     ] = None,
+    network: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="WEIGHTS",
+            help="A model (.safetensors) or a name of `kinemap weights`; repeat it to compare several, the first being "
+            "the baseline, such as --network mask-rcnn_r50 --network solov2_r50.",
+        ),
+    ] = None,
     category: Annotated[str, typer.Option(help="COCO's name of what is scored.")] = "car",
     min_score: Annotated[float, typer.Option(min=0.0, max=1.0, help="Instances of a lower score do not count.")] = 0.3,
     config: ConfigFlag = None,
@@ -48,11 +56,17 @@ def instances(
         raise InputError(f"--category {category}: expected one of {', '.join(CITYSCAPES_IDS)}")
     frames = semantic_frames(data)
     segmenters = {}
-    for folder in predictions or (None,):
-        name = "configured" if folder is None else folder.resolve().name
+    given: list[tuple[str, Path | None, str | None]] = [
+        (folder.resolve().name, folder, None) for folder in predictions or ()
+    ]
+    given += [(Path(weights).name, None, weights) for weights in network or ()]
+    for name, folder, weights in given or [("configured", None, None)]:
         if name in segmenters:
-            raise InputError(f"--predictions {folder}: a folder of that name was given already, expected another name")
-        backend = open_segmenter(data, folder, category=category, min_score=min_score, config=config, settings=settings)
+            flag = "--network" if folder is None else "--predictions"
+            raise InputError(f"{flag} {weights or folder}: one of that name was given already, expected another name")
+        backend = open_segmenter(
+            data, folder, category=category, min_score=min_score, weights=weights, config=config, settings=settings
+        )
         segmenters[name] = TimedSegmenter(backend)
     target = out_folder(out)
     scores = []

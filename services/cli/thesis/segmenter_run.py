@@ -28,10 +28,13 @@ def open_segmenter(
     *,
     category: str | None = None,
     min_score: float | None = None,
+    weights: str | None = None,
     config: Path | None = None,
     settings: list[str] | None = None,
 ) -> InstanceBackend:
     """The segmenter that the configuration names for `source`, with label images in `instances` where they are given.
+
+    `weights` ask for a network with these.
 
     Raises InputError where there is none that could find anything in images alone.
     """
@@ -41,6 +44,8 @@ def open_segmenter(
             "instances": instances,
             "categories": None if category is None else (category,),
             "min_score": min_score,
+            "weights": weights,
+            "backend": None if weights is None else "solov2",
         },
     }
     backend = choose_backend(load_config(config, merge_overrides(parse_settings(settings), flags)))

@@ -138,9 +138,9 @@ def _device(name: str) -> "torch.device":
 def _weights(path: Path | None, variant: str, categories: tuple[str, ...]) -> "dict[str, torch.Tensor] | None":
     if path is None:
         return None
-    from services.segmenter.weights.model_file import load_network
+    from services.segmenter.weights.model_file import load_solov2
 
-    network, description = load_network(path)
+    network, description = load_solov2(path)
     if (description.variant, description.categories) != (variant, categories):
         raise InputError(
             f"--start-from {path}: {description.variant} of {len(description.categories)} categories, expected "

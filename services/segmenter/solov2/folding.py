@@ -2,20 +2,28 @@
 """Batch normalisation folded into the convolutions before it: the same numbers, fewer passes over memory."""
 
 from copy import deepcopy
+from typing import Protocol, TypeVar, cast
 
 from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
-from services.segmenter.solov2.network import SoloV2
+from services.segmenter.solov2.resnet import ResNet
+
+
+class _WithBackbone(Protocol):
+    backbone: ResNet
+
+
+Network = TypeVar("Network", bound=nn.Module)
 
 _PAIRS = (("conv1", "bn1"), ("conv2", "bn2"), ("conv3", "bn3"), ("0", "1"))
 """names of a convolution and what normalises its output, in a residual block, the stem and a shortcut"""
 
 
-def folded(network: SoloV2) -> SoloV2:
+def folded(network: Network) -> Network:
     """A copy of a network in evaluation mode, for use only: it has no batch normalisation left."""
     copy = deepcopy(network).eval()
-    for module in list(copy.backbone.modules()):
+    for module in list(cast(_WithBackbone, copy).backbone.modules()):
         for conv_name, norm_name in _PAIRS:
             conv, norm = (module._modules.get(name) for name in (conv_name, norm_name))
             if isinstance(conv, nn.Conv2d) and isinstance(norm, nn.BatchNorm2d):

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The public checkpoints that can be pulled by name: mmdetection's SOLOv2 models (Apache-2.0), trained on COCO 2017."""
+"""The public checkpoints that can be pulled by name: mmdetection's (Apache-2.0), trained on COCO 2017."""
 
 from dataclasses import dataclass
 from typing import Final
 
 from services.runtime.errors import InputError
 
-_ZOO = "https://download.openmmlab.com/mmdetection/v2.0/solov2"
+_ZOO = "https://download.openmmlab.com/mmdetection/v2.0"
 
 
 @dataclass(frozen=True)
@@ -16,16 +16,17 @@ class PublicModel:
     name: str
     """of its configuration in mmdetection 3.x"""
     variant: str
-    """of VARIANTS"""
+    """of networks.NAMES"""
     folder: str
     file_name: str
     mask_ap: float
     """published, in percent, COCO val 2017"""
+    family: str = "solov2"
 
     @property
     def url(self) -> str:
         """Where it is downloaded from."""
-        return f"{_ZOO}/{self.folder}/{self.file_name}"
+        return f"{_ZOO}/{self.family}/{self.folder}/{self.file_name}"
 
     @property
     def sha256_prefix(self) -> str:
@@ -62,7 +63,16 @@ PUBLIC_MODELS: Final = (
     _model("solov2_r50_fpn_1x_coco", "solov2_r50", "solov2_r50_fpn_1x_coco", "20220512_125858-a357fa23", 34.8),
     _model("solov2_r50_fpn_ms-3x_coco", "solov2_r50", "solov2_r50_fpn_3x_coco", "20220512_125856-fed092d4", 37.5),
     _model("solov2_r101_fpn_ms-3x_coco", "solov2_r101", "solov2_r101_fpn_3x_coco", "20220511_095119-c559a076", 39.1),
+    PublicModel(
+        "mask-rcnn_r50_fpn_1x_coco",
+        "mask-rcnn_r50",
+        "mask_rcnn_r50_fpn_1x_coco",
+        "mask_rcnn_r50_fpn_1x_coco_20200205-d4b0c5d6.pth",
+        34.7,
+        "mask_rcnn",
+    ),
 )
+"""SOLOv2 first, the fastest of it first; Mask R-CNN is what the thesis compares it with."""
 
 
 def public_model(name: str) -> PublicModel:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from services.runtime.errors import InputError
+from services.segmenter.solov2.variants import VARIANTS
 from services.segmenter.weights.cache_folder import MODEL_SUFFIX, cache_folder, cached_model_path
 from services.segmenter.weights.catalogue import PUBLIC_MODELS, public_model
 
@@ -22,7 +23,7 @@ class ModelChoice:
 
 
 def choose_model(asked: str | None) -> ModelChoice:
-    """The model that is asked for; else a public one out of the cache, the fastest first; else the shipped one.
+    """The model that is asked for; else a public SOLOv2 out of the cache, the fastest first; else the shipped one.
 
     Args:
         asked: a file, the name of a model in the cache, or None.
@@ -62,6 +63,8 @@ def _asked(asked: str) -> ModelChoice:
 
 def _found() -> ModelChoice | None:
     for model in PUBLIC_MODELS:
+        if model.variant not in VARIANTS:
+            continue
         path = cached_model_path(model.name)
         if path.is_file():
             return ModelChoice(path, "a public model in the cache")

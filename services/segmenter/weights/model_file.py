@@ -12,6 +12,7 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from services.runtime.errors import InputError, ResourceError
+from services.segmenter.networks import NAMES, Network, build
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.variants import VARIANTS
 
@@ -24,7 +25,7 @@ class ModelDescription:
     """What a model file says of itself."""
 
     variant: str
-    """of VARIANTS"""
+    """of networks.NAMES"""
     categories: tuple[str, ...]
     """names, in the order of the network's outputs"""
     input_box: tuple[int, int]
@@ -86,8 +87,8 @@ def read_description(path: Path) -> ModelDescription:
         )
     except (KeyError, ValueError, TypeError) as error:
         raise InputError(f"weights {path}: its metadata lacks or garbles {error}") from error
-    if description.variant not in VARIANTS:
-        raise InputError(f"weights {path}: variant {description.variant}, expected one of {', '.join(VARIANTS)}")
+    if description.variant not in NAMES:
+        raise InputError(f"weights {path}: variant {description.variant}, expected one of {', '.join(NAMES)}")
     return description
 
 
@@ -96,7 +97,15 @@ def _size(values: list[int]) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def load_network(path: Path) -> tuple[SoloV2, ModelDescription]:
+def load_solov2(path: Path) -> tuple[SoloV2, ModelDescription]:
+    """As load_network. Raises InputError for another network too."""
+    network, description = load_network(path)
+    if not isinstance(network, SoloV2):
+        raise InputError(f"weights {path}: {description.variant}, expected one of {', '.join(VARIANTS)}")
+    return network, description
+
+
+def load_network(path: Path) -> tuple[Network, ModelDescription]:
     """The network with its weights, in evaluation mode, 32 bits.
 
     Raises:
@@ -105,7 +114,7 @@ def load_network(path: Path) -> tuple[SoloV2, ModelDescription]:
     description = read_description(path)
     with safe_open(path, framework="pt") as file:
         state = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 (it is no mapping)
-    network = SoloV2(VARIANTS[description.variant], len(description.categories))
+    network = build(description.variant, len(description.categories))
     try:
         network.load_state_dict({name: _restored(value) for name, value in state.items()})
     except RuntimeError as error:

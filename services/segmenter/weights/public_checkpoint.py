@@ -11,11 +11,11 @@ from torch import Tensor
 
 from schemas.categories import CATEGORY_NAMES
 from services.runtime.errors import InputError
-from services.segmenter.solov2.network import SoloV2
-from services.segmenter.solov2.variants import VARIANTS
+from services.segmenter.networks import NAMES, build, input_box
 from services.segmenter.weights.model_file import ModelDescription
 
-_CATEGORY_WEIGHT = "mask_head.conv_cls.weight"
+_CATEGORY_WEIGHTS = ("mask_head.conv_cls.weight", "roi_head.mask_head.conv_logits.weight")
+"""of SOLOv2 and of Mask R-CNN: one row a category"""
 
 
 def read_checkpoint(path: Path, sha256: str) -> tuple[ModelDescription, dict[str, Tensor]]:
@@ -28,11 +28,13 @@ def read_checkpoint(path: Path, sha256: str) -> tuple[ModelDescription, dict[str
     state = content.get("state_dict", content) if isinstance(content, dict) else None
     if not isinstance(state, dict) or not all(isinstance(value, Tensor) for value in state.values()):
         raise InputError(f"{path}: holds no state_dict of tensors, expected a checkpoint of mmdetection's SOLOv2")
-    if _CATEGORY_WEIGHT not in state:
-        raise InputError(f"{path}: has no {_CATEGORY_WEIGHT}, expected a checkpoint of mmdetection's SOLOv2")
-    variant = _variant_of(path, state)
-    names = _category_names(path, content, state[_CATEGORY_WEIGHT].shape[0])
-    return ModelDescription(variant, names, VARIANTS[variant].test_size, path.name, sha256), dict(state)
+    weight = next((name for name in _CATEGORY_WEIGHTS if name in state), None)
+    if weight is None:
+        raise InputError(f"{path}: has no {_CATEGORY_WEIGHTS[0]}, expected a checkpoint of mmdetection's SOLOv2")
+    categories = int(state[weight].shape[0])
+    variant = _variant_of(path, state, categories)
+    names = _category_names(path, content, categories)
+    return ModelDescription(variant, names, input_box(variant), path.name, sha256), dict(state)
 
 
 def _load(path: Path) -> Any:
@@ -50,17 +52,16 @@ def _brief(error: Exception) -> str:
     return (str(error).splitlines() or [type(error).__name__])[0][:160]
 
 
-def _variant_of(path: Path, state: dict[str, Tensor]) -> str:
+def _variant_of(path: Path, state: dict[str, Tensor], categories: int) -> str:
     if any("conv_offset" in name for name in state):
-        raise InputError(f"{path}: has deformable convolutions, expected one of {', '.join(VARIANTS)}")
+        raise InputError(f"{path}: has deformable convolutions, expected one of {', '.join(NAMES)}")
     shapes = {name: tuple(value.shape) for name, value in state.items()}
-    categories = shapes[_CATEGORY_WEIGHT][0]
-    for name, variant in VARIANTS.items():
+    for name in NAMES:
         with torch.device("meta"):
-            network = SoloV2(variant, categories)
+            network = build(name, categories)
         if shapes == {key: tuple(value.shape) for key, value in network.state_dict().items()}:
             return name
-    raise InputError(f"{path}: its tensors fit none of {', '.join(VARIANTS)}")
+    raise InputError(f"{path}: its tensors fit none of {', '.join(NAMES)}")
 
 
 def _category_names(path: Path, content: Any, count: int) -> tuple[str, ...]:

@@ -3,10 +3,11 @@
 
     python -m tests.benchmark.segmenter.runtimes IMAGES [--weights FILE] [--count 8] [--write]
 
-IMAGES is a folder of images. Without weights, those of SOLOv2-Light R18 are drawn by chance: times are the same, masks
-mean nothing. Least times of all runs; processor time of one thread, and time by the clock with two. Agreement is over
-instances with a score of 0.3 and more in exact numbers: the share that has a mask of IoU 0.98 and more among the
-others, and the median IoU. `--write` puts the table into docs/measurements.md.
+IMAGES is a folder of images. Without weights, those of three networks are drawn by chance and all images fitted into
+852x448: the convolutions take as long as with real ones, but Mask R-CNN, which finds nothing then, makes no masks.
+Least times of all runs; processor time of one thread, and time by the clock with two. Agreement is over instances with
+a score of 0.3 and more in exact numbers: the share that has a mask of IoU 0.98 and more among the others, and the
+median IoU. `--write` puts the table into docs/measurements.md.
 """
 
 import argparse
@@ -18,23 +19,26 @@ import numpy.typing as npt
 import torch
 
 from services.camera.sources.folders.image_files import ImageFiles
-from services.segmenter.inference import TorchInference, TorchOptions, precisions
+from services.segmenter.configured_network import inference_of
+from services.segmenter.inference import TorchOptions, precisions
+from services.segmenter.network_instances import Inference
+from services.segmenter.networks import Network, build
 from services.segmenter.solov2.folding import folded
-from services.segmenter.solov2.instances import InstanceOptions, SegmentedInstances
-from services.segmenter.solov2.network import SoloV2
-from services.segmenter.solov2.variants import VARIANTS
+from services.segmenter.solov2.instances import SegmentedInstances
 from services.segmenter.weights.model_file import load_network
 from tests.benchmark.measurements_page import markdown_table, put
 
 HEADER = ("network", "way", "ms of CPU, one thread", "ms, two threads", "same masks (IoU 0.98)", "median IoU")
 LEAST_SCORE = 0.3
 SAME_IOU = 0.98
-_DRAWN = "solov2-light_r18"
+_DRAWN = ("solov2-light_r18", "solov2-compact_r18", "mask-rcnn_r50")
+_DRAWN_BOX = (852, 448)
+_LEAST_KEPT = 0.1
 
 Images = list[npt.NDArray[np.uint8]]
 
 
-def least_ms(inference: TorchInference, images: Images) -> tuple[float, float]:
+def least_ms(inference: Inference, images: Images) -> tuple[float, float]:
     """Processor time with one thread, and time by the clock with two."""
     least = []
     for threads, clock in ((1, time.process_time), (2, time.perf_counter)):
@@ -59,6 +63,27 @@ def overlaps(exact: SegmentedInstances, other: SegmentedInstances) -> list[float
     return iou[sure].amax(1).tolist() if iou.shape[1] and bool(sure.any()) else [0.0] * int(sure.sum())
 
 
+def measured(
+    name: str, network: Network, box: tuple[int, int], images: Images, *, compared: bool
+) -> list[tuple[str, ...]]:
+    """A row for each precision."""
+    ready, device = folded(network), torch.device("cpu")
+    exact: list[SegmentedInstances] = []
+    rows = []
+    for precision in precisions(device):
+        inference = inference_of(ready, box, _LEAST_KEPT, TorchOptions(device, precision))
+        cpu_ms, wall_ms = least_ms(inference, images)
+        cells = ["-", "-"]
+        if compared:
+            found = [inference.segment(image) for image in images]
+            exact = exact or found
+            ious = [iou for one, other in zip(exact, found, strict=True) for iou in overlaps(one, other)]
+            if ious:
+                cells = [f"{np.mean(np.array(ious) >= SAME_IOU):.1%} of {len(ious)}", f"{np.median(ious):.3f}"]
+        rows.append((f"{name}, {box[0]}x{box[1]}", f"torch {precision}", f"{cpu_ms:.0f}", f"{wall_ms:.0f}", *cells))
+    return rows
+
+
 def main() -> None:
     """Measure every way and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -70,28 +95,14 @@ def main() -> None:
     files = ImageFiles(arguments.images)
     places = np.linspace(0, len(files) - 1, min(arguments.count, len(files))).round().astype(int)
     images = [files.read(int(place)) for place in places]
+    rows = []
     if arguments.weights is None:
-        torch.manual_seed(0)
-        network, box = SoloV2(VARIANTS[_DRAWN], 80).eval(), VARIANTS[_DRAWN].test_size
+        for name in _DRAWN:
+            torch.manual_seed(0)
+            rows += measured(name, build(name, 80).eval(), _DRAWN_BOX, images, compared=False)
     else:
         network, description = load_network(arguments.weights)
-        box = description.input_box
-    name = next(name for name, variant in VARIANTS.items() if variant == network.variant)
-    ready, device = folded(network), torch.device("cpu")
-    options = InstanceOptions(min_score=0.1)
-    exact: list[SegmentedInstances] = []
-    rows = []
-    for precision in precisions(device):
-        inference = TorchInference(ready, box, options, TorchOptions(device, precision))
-        cpu_ms, wall_ms = least_ms(inference, images)
-        cells = ["-", "-"]
-        if arguments.weights is not None:
-            found = [inference.segment(image) for image in images]
-            exact = exact or found
-            ious = [iou for one, other in zip(exact, found, strict=True) for iou in overlaps(one, other)]
-            if ious:
-                cells = [f"{np.mean(np.array(ious) >= SAME_IOU):.1%} of {len(ious)}", f"{np.median(ious):.3f}"]
-        rows.append((f"{name}, {box[0]}x{box[1]}", f"torch {precision}", f"{cpu_ms:.0f}", f"{wall_ms:.0f}", *cells))
+        rows += measured(description.variant, network, description.input_box, images, compared=True)
     table = markdown_table(HEADER, rows)
     if arguments.write:
         put("segmenter-runtimes", "python -m tests.benchmark.segmenter.runtimes IMAGES --write", table)

@@ -12,7 +12,7 @@ import argparse
 from services.cli.train.segmenter_validation import KITTI_HEIGHT_PX, Validation
 from services.cli.train.training_data import parse_training_data
 from services.segmenter.weights.choice import choose_model
-from services.segmenter.weights.model_file import load_network
+from services.segmenter.weights.model_file import load_solov2
 from tests.benchmark.measurements_page import markdown_table, put
 
 HEADER = (
@@ -36,7 +36,7 @@ def main() -> None:
     parser.add_argument("--min-height", type=float, default=KITTI_HEIGHT_PX)
     parser.add_argument("--write", action="store_true")
     arguments = parser.parse_args()
-    network, description = load_network(choose_model(arguments.weights).path)
+    network, description = load_solov2(choose_model(arguments.weights).path)
     data = [parse_training_data(folder) for folder in arguments.folders]
     validation = Validation(data, description.categories, description.input_box, arguments.min_height)
     score = validation.precision(network)

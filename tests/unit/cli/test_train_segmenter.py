@@ -11,7 +11,7 @@ from services.cli.app import app
 from services.formats.coco import CocoAnnotation, CocoCategory, CocoDataset, CocoImage, write_coco
 from services.formats.rle import encode_mask
 from services.runtime.errors import InputError
-from services.segmenter.weights.model_file import load_network
+from services.segmenter.weights.model_file import load_solov2
 from tests.unit.segmenter.training.painted_samples import painted_sample
 
 CATEGORIES = (CocoCategory(1, "person"), CocoCategory(3, "car"))
@@ -44,7 +44,7 @@ def test_learns_judges_saves_and_goes_on_for_longer(data: str, tmp_path: Path) -
     said = _train(data, "--validate", data, "--out", str(out), "--steps", "2", "--save-every", "1")
     assert "step 1 of 2" in said
     assert "mask AP50" in said
-    _, description = load_network(out / "model.safetensors")
+    _, description = load_solov2(out / "model.safetensors")
     assert description.variant == "solov2-compact_r18"
     assert description.categories[:3] == ("person", "bicycle", "car")
     assert (out / "curves.png").stat().st_size > 1000

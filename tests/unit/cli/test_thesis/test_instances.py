@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from schemas.records import Image, Instance, Instances
 from services.cli.thesis.instances_score import score_on_kitti
@@ -15,6 +16,8 @@ from services.formats.kitti_semantic import semantic_frames
 from services.formats.label_images import LabelledInstance, write_label_image, write_label_index
 from services.formats.png import write_png
 from services.segmenter.backend import FrameContext
+from services.segmenter.networks import build
+from services.segmenter.weights.model_file import ModelDescription, save_model
 
 NAMES = ("000000_10", "000001_10")
 
@@ -98,3 +101,23 @@ def test_predictions_of_other_images_are_refused(data: Path, kinemap: Any, tmp_p
     write_label_index(tmp_path / "poor", {"elsewhere": ()})
     ended = kinemap("thesis", "instances", "--data", data, "--predictions", "poor", "--out", "out")
     ended.is_one_line("poor: no word about any image", "'000000_10'")
+
+
+def test_two_networks_are_compared_by_one_command(data: Path, kinemap: Any, tmp_path: Path) -> None:
+    torch.manual_seed(0)
+    baseline, other = tmp_path / "mask-rcnn_r50.safetensors", tmp_path / "solov2-compact_r18.safetensors"
+    for path in (baseline, other):
+        network = build(path.stem, 2)
+        description = ModelDescription(path.stem, ("person", "car"), (96, 64), "a test")
+        save_model(path, description, network.state_dict(), half=True)
+    ended = kinemap(
+        *("thesis", "instances", "--data", data, "--out", "out", "--set", "segmenter.precision=fp32"),
+        *("--network", baseline, "--network", other),
+    )
+    assert ended.code == 0, ended.err
+    found = json.loads((tmp_path / "out" / "instances.json").read_text())
+    assert [side["name"] for side in found["segmenters"]] == [baseline.name, other.name]
+    assert all(side["seconds"] > 0 for side in found["segmenters"])
+    twice = kinemap("thesis", "instances", "--data", data, "--out", "out2", "--network", other, "--network", other)
+    assert twice.code == 2
+    assert "one of that name was given already" in twice.err

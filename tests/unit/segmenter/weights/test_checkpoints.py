@@ -10,8 +10,16 @@ import pytest
 import torch
 
 from services.runtime.errors import InputError
+from services.segmenter.mask_rcnn.network import MaskRcnn
 from services.segmenter.weights.catalogue import PUBLIC_MODELS, public_model
-from services.segmenter.weights.model_file import ModelDescription, load_network, read_description, save_model
+from services.segmenter.weights.model_file import (
+    ModelDescription,
+    load_network,
+    load_solov2,
+    read_description,
+    save_model,
+)
+from services.segmenter.weights.public_checkpoint import read_checkpoint
 from services.segmenter.weights.store import cached_models, import_file
 
 
@@ -127,3 +135,27 @@ def test_models_are_found_by_name_file_and_variant() -> None:
         public_model("solov2_r101-dcn_fpn_ms-3x_coco")
     with pytest.raises(InputError, match="yolo: is no known model, expected one of solov2-light_r18_fpn_ms-3x_coco, "):
         public_model("yolo")
+
+
+def test_mask_rcnn_is_told_by_its_tensors(tmp_path: Path, cache: Path) -> None:
+    with torch.device("meta"):
+        shapes = {name: value.shape for name, value in MaskRcnn(50, 80).state_dict().items()}
+    content = {"meta": {}, "state_dict": {name: torch.zeros(()).expand(shape) for name, shape in shapes.items()}}
+    torch.save(content, tmp_path / "mine.pth")
+    description, state = read_checkpoint(tmp_path / "mine.pth", "")
+    assert (description.variant, description.input_box) == ("mask-rcnn_r50", (1333, 800))
+    assert len(description.categories) == 80
+    assert state.keys() == shapes.keys()
+    assert public_model("mask-rcnn_r50").url == (
+        "https://download.openmmlab.com/mmdetection/v2.0/mask_rcnn/mask_rcnn_r50_fpn_1x_coco/"
+        "mask_rcnn_r50_fpn_1x_coco_20200205-d4b0c5d6.pth"
+    )
+
+
+def test_mask_rcnn_is_no_network_to_train(tmp_path: Path) -> None:
+    path = tmp_path / "baseline.safetensors"
+    description = ModelDescription("mask-rcnn_r50", ("car",), (96, 64), "a test")
+    save_model(path, description, MaskRcnn(50, 1).state_dict(), half=True)
+    assert isinstance(load_network(path)[0], MaskRcnn)
+    with pytest.raises(InputError, match=r"mask-rcnn_r50, expected one of solov2-compact_r18"):
+        load_solov2(path)
