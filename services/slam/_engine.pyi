@@ -61,6 +61,7 @@ class EngineOptions:
     merge_delay_frames: int  # 2: bundle adjustment of keyframe k is merged at frame k + 2
     local_bundle_keyframes: int  # 15 that move
     radial_sigma: float  # 0.01: radial distortion calibration may have left, found by flush(); 0: calibration is exact
+    velocity_change: float  # 0.05: sigma of one camera's in a second, part of its top speed; 0: by anything
     threads: int  # 2, of feature extraction; results are the same with any number
     loop_closing: bool  # True: recognises places seen before; needs a vocabulary
     right_shift_sigma_px: float  # 0.05: the same of the right image's columns, found with it; 0: the pair is exact

@@ -41,6 +41,7 @@ class EngineSettings:
     merge_delay_frames: int = 2
     local_bundle_keyframes: int = 15
     radial_sigma: float = 0.01
+    velocity_change: float = 0.05
     threads: int = 2
     camera_height_m: float = 0.0
     new_map_after_lost: int = 50
@@ -265,6 +266,7 @@ def _engine_options(settings: EngineSettings) -> _engine.EngineOptions:
     options.merge_delay_frames = settings.merge_delay_frames
     options.local_bundle_keyframes = settings.local_bundle_keyframes
     options.radial_sigma = settings.radial_sigma
+    options.velocity_change = settings.velocity_change
     options.threads = settings.threads
     options.camera_height_m = settings.camera_height_m
     options.new_map_after_lost = settings.new_map_after_lost

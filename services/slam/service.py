@@ -152,6 +152,7 @@ class SlamService(FrameService):
             seed=options.seed,
             merge_delay_frames=options.merge_delay_frames,
             radial_sigma=options.radial_sigma,
+            velocity_change=options.velocity_change,
             loop_closing=options.loop_closing,
             wait_for_loops=self._lossless,
             semi_dense=options.semi_dense,

@@ -25,6 +25,13 @@ class SlamConfig(BaseModel):
     radial_sigma: float = Field(
         0.01, ge=0, description="radial distortion the calibration may have left, found in young maps; 0: it is exact"
     )
+    velocity_change: float = Field(
+        0.05,
+        ge=0,
+        le=100,
+        description="by how much of its top speed one camera's velocity changes in a second (sigma): what holds the "
+        "scale where traffic hides the street; 0: by anything",
+    )
     loop_closing: bool = Field(
         True, description="recognise places seen before: take back the drift since, and join maps"
     )

@@ -27,6 +27,8 @@ LocalMapperOptions MapperOptions(const EngineOptions& options) {
   LocalMapperOptions mapper;
   mapper.merge_delay_frames = options.merge_delay_frames;
   mapper.bundle.keyframes = options.local_bundle_keyframes;
+  mapper.bundle.solver.velocity_change = options.velocity_change;
+  mapper.final_adjustment.bundle.velocity_change = options.velocity_change;
   mapper.final_adjustment.bundle.radial_sigma = options.radial_sigma;
   mapper.final_adjustment.bundle.right_shift_sigma_px = options.right_shift_sigma_px;
   return mapper;
@@ -42,6 +44,7 @@ LensFinderOptions LensOptions(const EngineOptions& options) {
 LoopCloserOptions ClosingOptions(const EngineOptions& options) {
   LoopCloserOptions closer;
   closer.seed = options.seed;
+  closer.bundle.velocity_change = options.velocity_change;
   closer.wait = options.wait_for_loops;
   return closer;
 }

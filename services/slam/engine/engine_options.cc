@@ -29,6 +29,7 @@ void EngineOptions::Check() const {
   Require(merge_delay_frames >= 1 && merge_delay_frames <= 1000, "merge_delay_frames", "1 to 1000", merge_delay_frames);
   Require(local_bundle_keyframes >= 2, "local_bundle_keyframes", "at least 2", local_bundle_keyframes);
   Require(radial_sigma >= 0 && radial_sigma <= 1, "radial_sigma", "0 to 1", radial_sigma);
+  Require(velocity_change >= 0 && velocity_change <= 100, "velocity_change", "0 to 100", velocity_change);
   Require(threads >= 1 && threads <= 64, "threads", "1 to 64", threads);
   Require(right_shift_sigma_px >= 0 && right_shift_sigma_px <= 10, "right_shift_sigma_px", "0 to 10",
           right_shift_sigma_px);

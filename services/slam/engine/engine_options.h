@@ -22,8 +22,9 @@ struct EngineOptions {
   int merge_delay_frames = 2;       ///< bundle adjustment of keyframe k is merged at frame k + this, at least 1
   int local_bundle_keyframes = 15;  ///< keyframes that move in a local bundle adjustment
   double radial_sigma = 0.01;  ///< distortion calibration may have left, found in young maps; 0: calibration is exact
-  int threads = 2;             ///< of feature extraction; results are the same with any number
-  bool loop_closing = true;    ///< recognises places seen before; needs a vocabulary
+  double velocity_change = 0.05;       ///< of one camera in a second, sigma, part of its top speed; 0: by anything
+  int threads = 2;                     ///< of feature extraction; results are the same with any number
+  bool loop_closing = true;            ///< recognises places seen before; needs a vocabulary
   double right_shift_sigma_px = 0.05;  ///< the same of the right image's columns, found with the distortion
   double depth_baseline_m = 0.5;       ///< of the pair (1 px) that a depth camera without a right image is as good as
   bool wait_for_loops = true;          ///< false: a loop is merged when it is solved, not at a fixed frame (realtime)

@@ -153,6 +153,7 @@ void BindOptions(py::module_& module) {
       .def_readwrite("seed", &EngineOptions::seed)
       .def_readwrite("merge_delay_frames", &EngineOptions::merge_delay_frames)
       .def_readwrite("local_bundle_keyframes", &EngineOptions::local_bundle_keyframes)
+      .def_readwrite("velocity_change", &EngineOptions::velocity_change)
       .def_readwrite("radial_sigma", &EngineOptions::radial_sigma)
       .def_readwrite("threads", &EngineOptions::threads)
       .def_readwrite("loop_closing", &EngineOptions::loop_closing)

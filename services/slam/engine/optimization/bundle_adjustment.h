@@ -33,10 +33,10 @@ struct BundleObservation {
 };
 
 /// Three cameras that followed each other.
-struct SpeedChange {
+struct VelocityChange {
   int first, second, third;  ///< indices, in the order of time
   double earlier_s, later_s;
-  /// Standard deviation of the logarithm of the ratio of the two mean speeds, were BundleOptions::speed_change 1.
+  /// Standard deviation of the change of velocity, part of the speed, were BundleOptions::velocity_change 1.
   double sigma;
 };
 
@@ -45,7 +45,7 @@ struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;
-  std::vector<SpeedChange> speed_changes;
+  std::vector<VelocityChange> velocity_changes;
   double right_shift_px = 0;  ///< by which the right image's columns are too high
   double radial = 0;          ///< k with pixel = Project(point * (1 + k r^2)), r = distance from the axis at depth 1
   /// Half the sum of Huber's losses and priors when the robust iterations ended; not a number: they failed.
@@ -61,17 +61,17 @@ struct BundleOptions {
   /// The same of the columns of the right image, found together with the radial distortion.
   double right_shift_sigma_px = 0.1;
   /// By how much of its top speed the camera's velocity changes in a second, one standard deviation; 0: by anything.
-  double speed_change = 0;
+  double velocity_change = 0;
 };
 
 /// Minimises the reprojection error over the cameras that are not fixed and all points, in place, and marks the
 /// outliers. With `radial_sigma` it also finds what calibration left, by which the right image is shifted (a twelfth of
 /// a pixel changes a stereo map's scale by three thousandths) and the radial distortion: a hundredth of it is enough
 /// to change a monocular map's scale by a tenth in one turn (for KITTI see Cvisic, Markovic and Petrovic,
-/// "Recalibrating the KITTI dataset camera setup for improved odometry accuracy", ECMR 2021). With `speed_change` one
-/// camera's scale is also held by its inertia: by the speeds of cameras that follow each other. Bounded by iterations,
-/// never by time, on one thread: the same problem gives the same bytes. Once `cancelled` is true it ends early with a
-/// problem that is good for nothing.
+/// "Recalibrating the KITTI dataset camera setup for improved odometry accuracy", ECMR 2021). With `velocity_change`
+/// one camera's scale is also held by its inertia: by the velocities of cameras that follow each other. Bounded by
+/// iterations, never by time, on one thread: the same problem gives the same bytes. Once `cancelled` is true it ends
+/// early with a problem that is good for nothing.
 void SolveBundle(const CameraModel& camera, const BundleOptions& options, BundleProblem* problem,
                  const std::atomic<bool>* cancelled = nullptr);
 

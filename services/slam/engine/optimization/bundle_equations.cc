@@ -39,7 +39,7 @@ BundleEquations::BundleEquations(const CameraModel& camera, const BundleOptions&
       block_of_camera_(problem.cameras.size(), -1) {
   NumberBlocks();
   GroupByPoint();
-  if (options.speed_change > 0) TakeSpeedChanges();
+  if (options.velocity_change > 0) TakeVelocityChanges();
   CoupleBlocks();
 }
 
@@ -90,7 +90,7 @@ void BundleEquations::CoupleBlocks() {
       for (int j = i; j < point.end_term; ++j) reduced_.Couple(terms_[i].block, terms_[j].block);
     }
   }
-  for (const SpeedTerm& term : speed_terms_) {
+  for (const VelocityTerm& term : velocity_terms_) {
     for (const int a : term.blocks) {
       for (const int b : term.blocks) {
         if (a >= 0 && a < b) reduced_.Couple(a, b);
@@ -101,26 +101,26 @@ void BundleEquations::CoupleBlocks() {
   for (int i = 0; i < unknown_cameras_; ++i) reduced_.Couple(i, unknown_cameras_);
 }
 
-void BundleEquations::TakeSpeedChanges() {
+void BundleEquations::TakeVelocityChanges() {
   std::vector<bool> used(problem_.cameras.size(), false);
   for (const Term& term : terms_) used[problem_.observations[term.observation].camera] = true;
-  for (const SpeedChange& change : problem_.speed_changes) {
+  for (const VelocityChange& change : problem_.velocity_changes) {
     if (!used[change.first] || !used[change.second] || !used[change.third]) continue;
     const std::array<int, 3> blocks{block_of_camera_[change.first], block_of_camera_[change.second],
                                     block_of_camera_[change.third]};
     if (*std::max_element(blocks.begin(), blocks.end()) < 0) continue;
-    SpeedTerm& term = speed_terms_.emplace_back();
+    VelocityTerm& term = velocity_terms_.emplace_back();
     term.change = change;
     term.blocks = blocks;
   }
 }
 
-void BundleEquations::AddBetweenCameras(const SpeedTerm& term) {
+void BundleEquations::AddBetweenCameras(const VelocityTerm& term) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const int a = term.blocks[i], b = term.blocks[j];
       if (a < 0 || a >= b) continue;
-      reduced_.Block(a, b).noalias() += term.weight * term.by_pose[i] * term.by_pose[j].transpose();
+      reduced_.Block(a, b).noalias() += term.weight * term.by_pose[i].transpose() * term.by_pose[j];
     }
   }
 }
@@ -134,7 +134,7 @@ bool BundleEquations::Solve(double damping, BundleStep* step) {
     reduced_.Right(i) = -blocks_[i].gradient;
     if (calibrates_ && i < unknown_cameras_) reduced_.Block(i, unknown_cameras_) = blocks_[i].with_rest;
   }
-  for (const SpeedTerm& term : speed_terms_) AddBetweenCameras(term);
+  for (const VelocityTerm& term : velocity_terms_) AddBetweenCameras(term);
   for (PointEquations& point : points_) Eliminate(damping, &point);
   if (!reduced_.Solve(&step->blocks)) return false;
   step->expected_decrease = SubstituteBack(damping, step);

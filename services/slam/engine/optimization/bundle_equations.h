@@ -65,11 +65,11 @@ class BundleEquations {
     Vector6d gradient;
   };
 
-  struct SpeedTerm {
-    SpeedChange change;
+  struct VelocityTerm {
+    VelocityChange change;
     std::array<int, 3> blocks;  ///< of its cameras, -1: fixed
     double weight = 0;          ///< at the state linearized at
-    std::array<Vector6d, 3> by_pose;
+    std::array<Eigen::Matrix<double, 3, 6>, 3> by_pose;
   };
 
   void NumberBlocks();
@@ -80,9 +80,9 @@ class BundleEquations {
   template <int kRows>
   double Add(const BundleState& state, const CameraPose& pose, int term, PointEquations* point);
   void AddRestPriors(const CalibrationRest& rest);
-  void TakeSpeedChanges();
-  double Add(const BundleState& state, SpeedTerm* term);
-  void AddBetweenCameras(const SpeedTerm& term);
+  void TakeVelocityChanges();
+  double Add(const BundleState& state, VelocityTerm* term);
+  void AddBetweenCameras(const VelocityTerm& term);
   void Eliminate(double damping, PointEquations* point);
   double SubstituteBack(double damping, BundleStep* step) const;
 
@@ -96,7 +96,7 @@ class BundleEquations {
   std::vector<Coupling> couplings_;     // of each term's camera with its point
   std::vector<PointEquations> points_;  // with observations or without
   std::vector<BlockEquations> blocks_;  // the cameras that move, then, where it is found, what calibration left
-  std::vector<SpeedTerm> speed_terms_;
+  std::vector<VelocityTerm> velocity_terms_;
   ReducedCameraSystem reduced_{0};
 };
 

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "optimization/bundle_equations.h"
-#include "optimization/speed_ratio.h"
+#include "optimization/relative_velocity_change.h"
 
 namespace kinemap {
 namespace {
 
-constexpr double kSpeedOutlierBound = 3.841;  // 95 % of chi-squared, one degree of freedom
+constexpr double kVelocityBound = 3.841;  // of the squared change in variances, beyond which it is a jolt
 
 struct Weighed {
   double cost;
@@ -31,7 +31,7 @@ ObservedPixels<kRows> PixelsOf(const BundleObservation& observation) {
   return pixels;
 }
 
-SpeedRatio RatioOf(const SpeedChange& change, const BundleState& state) {
+RelativeVelocityChange ChangeOf(const VelocityChange& change, const BundleState& state) {
   return {{state.cameras_from_map[change.first], state.cameras_from_map[change.second],
            state.cameras_from_map[change.third]},
           change.earlier_s,
@@ -53,9 +53,10 @@ double BundleEquations::Cost(const BundleState& state) const {
         Reproject<kRows>(camera_, RestOf(state), in_camera) - PixelsOf<kRows>(observation);
     cost += Weigh(error.squaredNorm(), observation.inverse_variance, kOutlierBound<kRows>, robust_).cost;
   };
-  for (const SpeedTerm& term : speed_terms_) {
-    const double sigma = options_.speed_change * term.change.sigma, error = RatioOf(term.change, state).logarithm;
-    cost += Weigh(error * error, 1 / (sigma * sigma), kSpeedOutlierBound, true).cost;
+  for (const VelocityTerm& term : velocity_terms_) {
+    const double sigma = options_.velocity_change * term.change.sigma;
+    const double squared = ChangeOf(term.change, state).change.squaredNorm();
+    cost += Weigh(squared, 1 / (sigma * sigma), kVelocityBound, true).cost;
   }
   for (const Term& term : terms_) {
     const BundleObservation& observation = problem_.observations[term.observation];
@@ -76,7 +77,7 @@ double BundleEquations::Linearize(const BundleState& state) {
     block.gradient.setZero();
   }
   double cost = 0;
-  for (SpeedTerm& term : speed_terms_) cost += Add(state, &term);
+  for (VelocityTerm& term : velocity_terms_) cost += Add(state, &term);
   for (PointEquations& point : points_) {
     point.hessian.setZero();
     point.gradient.setZero();
@@ -120,17 +121,17 @@ double BundleEquations::Add(const BundleState& state, const CameraPose& pose, in
   return weighed.cost;
 }
 
-double BundleEquations::Add(const BundleState& state, SpeedTerm* term) {
-  const SpeedRatio ratio = RatioOf(term->change, state);
-  const double sigma = options_.speed_change * term->change.sigma;
-  const Weighed weighed = Weigh(ratio.logarithm * ratio.logarithm, 1 / (sigma * sigma), kSpeedOutlierBound, true);
+double BundleEquations::Add(const BundleState& state, VelocityTerm* term) {
+  const RelativeVelocityChange velocity = ChangeOf(term->change, state);
+  const double sigma = options_.velocity_change * term->change.sigma;
+  const Weighed weighed = Weigh(velocity.change.squaredNorm(), 1 / (sigma * sigma), kVelocityBound, true);
   term->weight = weighed.weight;
-  term->by_pose = ratio.by_pose;
+  term->by_pose = velocity.by_pose;
   for (int i = 0; i < 3; ++i) {
     if (term->blocks[i] < 0) continue;
     BlockEquations& block = blocks_[term->blocks[i]];
-    block.hessian.noalias() += term->weight * ratio.by_pose[i] * ratio.by_pose[i].transpose();
-    block.gradient += term->weight * ratio.logarithm * ratio.by_pose[i];
+    block.hessian.noalias() += term->weight * velocity.by_pose[i].transpose() * velocity.by_pose[i];
+    block.gradient.noalias() += term->weight * velocity.by_pose[i].transpose() * velocity.change;
   }
   return weighed.cost;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "map/reprojection_check.h"
+#include "optimization/velocity_changes.h"
 
 namespace kinemap {
 
@@ -40,6 +41,7 @@ BundleProblem CopyBundleProblem(const SlamMap& map, const std::set<KeyframeId>& 
                                       keypoint.InverseVariance(map.scales()), RightXIn(map, keypoint)});
     }
   }
+  problem.velocity_changes = VelocityChanges(map, problem);
   return problem;
 }
 

@@ -26,6 +26,14 @@ double RightError(const CameraModel& camera, const PoseObservation& observation,
   return std::isnan(observation.right_x_px) ? 0 : camera.RightX(point) - observation.right_x_px;
 }
 
+/// Inverse covariance of the pixel's error and of what the point's own shows of in the image, 1 / px^2.
+Eigen::Matrix2d Information(const PoseObservation& observation, const Eigen::Matrix<double, 2, 3>& by_point_in_map) {
+  const Eigen::Vector2d shown_px = by_point_in_map * observation.depth_error;
+  const double variance = 1 / observation.inverse_variance;
+  return observation.inverse_variance *
+         (Eigen::Matrix2d::Identity() - shown_px * shown_px.transpose() / (variance + shown_px.squaredNorm()));
+}
+
 }  // namespace
 
 bool PosePrior::Contains(const RigidTransform& pose) const {
@@ -53,9 +61,12 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
     }
     const Eigen::Vector2d error = camera_.Project(point) - observations[i].pixel_px;
     const double right_error = RightError(camera_, observations[i], point);
-    const double squared = (error.squaredNorm() + right_error * right_error) * observations[i].inverse_variance;
+    const Eigen::Matrix<double, 2, 3> projection = camera_.ProjectionJacobian(point);
+    const Eigen::Matrix2d information = Information(observations[i], projection * rotation);
+    const double squared =
+        error.dot(information * error) + right_error * right_error * observations[i].inverse_variance;
     const double bound = OutlierBound(observations[i]), huber = std::sqrt(bound);
-    double weight = observations[i].inverse_variance;
+    double weight = 1;
     if (robust && squared > bound) {
       equations.cost += 2 * huber * std::sqrt(squared) - bound;
       weight *= huber / std::sqrt(squared);
@@ -63,12 +74,13 @@ PoseOptimizer::NormalEquations PoseOptimizer::Linearize(const RigidTransform& ca
       equations.cost += squared;
     }
     Eigen::Matrix<double, 2, 6> jacobian;
-    const Eigen::Matrix<double, 2, 3> projection = camera_.ProjectionJacobian(point);
     jacobian.leftCols<3>() = projection;
     jacobian.rightCols<3>() = -projection * CrossMatrix(point);
-    equations.hessian.noalias() += weight * jacobian.transpose() * jacobian;
-    equations.gradient.noalias() += weight * jacobian.transpose() * error;
+    const Eigen::Matrix<double, 6, 2> weighted = weight * jacobian.transpose() * information;
+    equations.hessian.noalias() += weighted * jacobian;
+    equations.gradient.noalias() += weighted * error;
     if (std::isnan(observations[i].right_x_px)) continue;
+    weight *= observations[i].inverse_variance;
     const Eigen::RowVector3d right_projection = camera_.RightXJacobian(point);
     Vector6d right_jacobian;
     right_jacobian << right_projection.transpose(), point.cross(right_projection.transpose());
@@ -127,12 +139,14 @@ PoseEstimate PoseOptimizer::Optimize(const RigidTransform& initial_camera_from_m
       if (converged) break;
     }
     estimate.inliers = 0;
+    const Eigen::Matrix3d rotation = estimate.camera_from_map.rotation.toRotationMatrix();
     for (size_t i = 0; i < observations.size(); ++i) {
       const Eigen::Vector3d point = estimate.camera_from_map * observations[i].point_in_map;
+      const Eigen::Vector2d error = camera_.Project(point) - observations[i].pixel_px;
       const double right_error = RightError(camera_, observations[i], point);
       const double squared =
-          ((camera_.Project(point) - observations[i].pixel_px).squaredNorm() + right_error * right_error) *
-          observations[i].inverse_variance;
+          error.dot(Information(observations[i], camera_.ProjectionJacobian(point) * rotation) * error) +
+          right_error * right_error * observations[i].inverse_variance;
       estimate.inlier[i] = point.z() > 0 && squared <= OutlierBound(observations[i]);
       estimate.inliers += estimate.inlier[i] ? 1 : 0;
     }

@@ -16,6 +16,8 @@ struct PoseObservation {
   Eigen::Vector2d pixel_px;
   double inverse_variance;                                       ///< 1 / px^2
   double right_x_px = std::numeric_limits<double>::quiet_NaN();  ///< column in the right image; not a number: none
+  /// How far off the point may be along one direction: one standard deviation, map frame. Zero with a right image.
+  Eigen::Vector3d depth_error = Eigen::Vector3d::Zero();
 };
 
 struct PoseEstimate {
@@ -38,7 +40,9 @@ struct PosePrior {
 /// Pose of one camera against fixed points: Levenberg-Marquardt on the reprojection error with Huber's loss; after
 /// each of four rounds observations beyond the 95 % bound of chi-squared (of two degrees of freedom, of three with
 /// a right image) are left out (and may come back), and the last
-/// two rounds are quadratic (Mur-Artal and Tardos 2015, section V). A prior pulls like the observations do, and in all
+/// two rounds are quadratic (Mur-Artal and Tardos 2015, section V). Errors in the direction in which a point's own
+/// uncertainty shows count as much less as that is more than the pixel's: such a point tells of the turn, and of the
+/// shift what it knows. A prior pulls like the observations do, and in all
 /// rounds: Huber's loss bounds its pull on a camera that did not move as expected.
 class PoseOptimizer {
  public:

@@ -68,13 +68,13 @@ RigidTransform CameraAt(const Eigen::Vector3d& center, double yaw_rad) {
 }
 
 SlamMap MapOf(const Scene& scene, const CameraModel& camera, const std::vector<RigidTransform>& cameras_from_map,
-              double noise_px) {
+              double noise_px, int64_t interval_ns) {
   SlamMap map(0, TestScales());
   std::map<int, LandmarkId> landmark_of_point;
   std::map<int, std::pair<KeyframeId, int>> first_sight;
   for (size_t k = 0; k < cameras_from_map.size(); ++k) {
-    const Frame frame =
-        scene.Observe(camera, TestScales(), cameras_from_map[k], static_cast<int64_t>(k + 1) * 100, noise_px);
+    const int64_t timestamp_ns = static_cast<int64_t>(k + 1) * interval_ns;
+    const Frame frame = scene.Observe(camera, TestScales(), cameras_from_map[k], timestamp_ns, noise_px);
     const KeyframeId id = map.InsertKeyframe(frame).id;
     const std::vector<int>& points = scene.observed_points();
     for (int i = 0; i < frame.size(); ++i) {

@@ -48,8 +48,9 @@ Frame WithDepths(const Frame& frame, const std::function<double(int keypoint)>& 
 /// camera_from_map of a camera at `center`, turned by `yaw_rad` about its y axis (to the right).
 RigidTransform CameraAt(const Eigen::Vector3d& center, double yaw_rad = 0);
 
-/// A map whose keyframes stand at these poses and see all points of the scene they can, exactly.
+/// A map whose keyframes stand at these poses, `interval_ns` after one another, and see all points of the scene they
+/// can, exactly.
 SlamMap MapOf(const Scene& scene, const CameraModel& camera, const std::vector<RigidTransform>& cameras_from_map,
-              double noise_px = 0);
+              double noise_px = 0, int64_t interval_ns = 100);
 
 }  // namespace kinemap::synthetic

@@ -91,6 +91,25 @@ TEST(PosePrior, ContainsWhatIsLikely) {
   EXPECT_FALSE(prior.Contains(CameraAt({0.3, 0, 0}, 0.4)));
 }
 
+TEST(PoseOptimizer, APointOfUnknownDepthTellsOnlyWhatItKnows) {
+  const Scene scene(80, 4, 5, 15);
+  const RigidTransform truth = CameraAt({0.4, 0, 0.3}, 0.1);
+  std::vector<PoseObservation> observations = Observations(scene, truth, 0.3, 5);
+  // Half the points are a third too near along the ray of the camera that made them.
+  for (size_t i = 0; i < observations.size(); i += 2) observations[i].point_in_map *= 0.67;
+  const auto off = [&] {
+    const RigidTransform found =
+        PoseOptimizer(TestCamera()).Optimize(CameraAt({0, 0, 0}), observations).camera_from_map;
+    return (found.Inverse().translation - truth.Inverse().translation).norm();
+  };
+  const double trusted = off();
+  for (size_t i = 0; i < observations.size(); i += 2) {
+    observations[i].depth_error = 0.5 * observations[i].point_in_map;
+  }
+  EXPECT_LT(off(), 0.02);
+  EXPECT_GT(trusted, 0.05);
+}
+
 TEST(PoseOptimizer, SaysNothingOfTwoPoints) {
   const Scene scene(2, 3, 5, 15);
   EXPECT_EQ(PoseOptimizer(TestCamera()).Optimize({}, Observations(scene, {}, 0, 1)).inliers, 0);
@@ -207,7 +226,7 @@ TEST_F(Bundle, SpeedHoldsACameraThatSeesLittle) {
                 [](const BundleObservation& observation) { return observation.camera == 4 && observation.point > 0; });
   const Eigen::Vector3d ahead = CameraAt({0.4 * 4, 0, 0.3 * 4 + 1}, 0.08).Inverse().translation;
   problem_.cameras[4].camera_from_map = CameraAt(ahead, 0.08);
-  problem_.speed_changes = {{2, 3, 4, 0.1, 0.1, 0.02}};
+  problem_.velocity_changes = {{2, 3, 4, 0.1, 0.1, 0.02}};
   const auto way = [&] {
     return (problem_.cameras[4].camera_from_map.Inverse().translation -
             problem_.cameras[3].camera_from_map.Inverse().translation)
@@ -218,7 +237,7 @@ TEST_F(Bundle, SpeedHoldsACameraThatSeesLittle) {
   EXPECT_GT(way(), 1);
   problem_ = before;
   BundleOptions options{20, 20, 1e-9};
-  options.speed_change = 1;
+  options.velocity_change = 1;
   SolveBundle(TestCamera(), options, &problem_);
   EXPECT_NEAR(way(), 0.5, 0.02);
 }
