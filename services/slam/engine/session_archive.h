@@ -9,7 +9,7 @@
 
 #include "ground/ground_scale.h"
 #include "loop_closing/loop_detector.h"
-#include "loop_closing/merge_agreement.h"
+#include "loop_closing/place_agreement.h"
 #include "map_update.h"
 #include "semi_dense/semi_dense_state.h"
 #include "storage/feature_codec.h"
@@ -33,7 +33,7 @@ void Serialize(Archive& archive, LoopDetector::Group& group) {
 }
 
 template <typename Archive>
-void Serialize(Archive& archive, MergeAgreement::State& agreement) {
+void Serialize(Archive& archive, PlaceAgreement::State& agreement) {
   auto& [keyframe_id, matched_id, matched_from_keyframe, count] = agreement;
   archive(keyframe_id, matched_id, matched_from_keyframe, count);
 }

@@ -9,7 +9,7 @@
 #include "loop_closing/essential_graph.h"
 #include "loop_closing/loop_detector.h"
 #include "loop_closing/loop_verifier.h"
-#include "loop_closing/merge_agreement.h"
+#include "loop_closing/place_agreement.h"
 #include "loop_closing/place_fuser.h"
 #include "map/atlas.h"
 #include "map/place_index.h"
@@ -21,7 +21,7 @@ namespace kinemap {
 struct LoopCloserOptions {
   LoopDetectorOptions detector;
   LoopVerifierOptions verifier;
-  MergeAgreementOptions agreement;
+  PlaceAgreementOptions agreement;
   EssentialGraphOptions essential_graph;
   PoseGraphOptions pose_graph;
   BundleOptions bundle{5, 5, 1e-5, 0};
@@ -46,7 +46,7 @@ struct LoopEvents {
 /// What a settled loop closer carries from one keyframe to the next.
 struct LoopCloserState {
   std::vector<LoopDetector::Group> candidates;
-  MergeAgreement::State agreement;
+  PlaceAgreement::State agreement;
   int keyframes_since_loop = 0;
 };
 
@@ -90,7 +90,7 @@ class LoopCloser {
   CameraModel camera_;
   LoopDetector detector_;
   LoopVerifier verifier_;
-  MergeAgreement agreement_;
+  PlaceAgreement agreement_;
   PlaceFuser fuser_;
   BackgroundSlot<GraphProblem> graph_slot_;
   BackgroundSlot<BundleProblem> bundle_slot_;

@@ -138,20 +138,18 @@ std::optional<VerifiedLoop> LoopVerifier::Verify(Atlas* atlas, const PlaceIndex&
   std::vector<LandmarkMatch> matches = Project(sides, fine.first_from_second, keyframe_id, kNarrowRadiusPx);
   if (matches.size() < static_cast<size_t>(options_.min_matches)) return std::nullopt;
   if (!IsConfirmed(sides, fine.first_from_second)) return std::nullopt;
-  if (&map != &candidate_map && Spread(sides.keyframe, matches) < options_.min_spread) return std::nullopt;
-  if (&map == &candidate_map &&
-      !IsWithinDrift(options_.drift, map, keyframe_id, candidate_id, fine.first_from_second.Inverse(), fixed_scale)) {
-    return std::nullopt;
-  }
+  const bool within_drift = &map == &candidate_map && IsWithinDrift(options_.drift, map, keyframe_id, candidate_id,
+                                                                    fine.first_from_second.Inverse(), fixed_scale);
+  if (!within_drift && Spread(sides.keyframe, matches) < options_.min_spread) return std::nullopt;
 
   // Of cameras in their maps' units, turned into one of what is anchored at the two.
   const SimilarityTransform candidate_anchor(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(),
                                              sides.candidate.scale);
   const SimilarityTransform keyframe_anchor(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(),
                                             sides.keyframe.scale);
-  return VerifiedLoop{keyframe_id, candidate_id,
-                      candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor, fixed_scale,
-                      std::move(matches)};
+  return VerifiedLoop{
+      keyframe_id, candidate_id, candidate_anchor.Inverse() * fine.first_from_second.Inverse() * keyframe_anchor,
+      fixed_scale, within_drift, std::move(matches)};
 }
 
 }  // namespace kinemap

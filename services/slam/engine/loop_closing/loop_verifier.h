@@ -20,8 +20,8 @@ struct LoopVerifierOptions {
   int min_matches = 40;           ///< after projecting the candidate's surroundings into the keyframe
   int min_neighbor_matches = 25;  ///< the same in a neighbour of the keyframe, which then confirms it
   int min_confirmations = 2;      ///< such neighbours, of the five that share most
-  double min_spread = 0.1;        ///< of the matches of another map across the image (standard deviation, widths): one
-                                  ///< house looks like many
+  double min_spread = 0.1;        ///< of matches across the image where no way bounds what may be believed (standard
+                                  ///< deviation, widths): one house looks like many
   Sim3RansacOptions ransac;
   DriftBoundOptions drift;
 };
@@ -33,13 +33,14 @@ struct VerifiedLoop {
   /// Between what is anchored at the two.
   SimilarityTransform matched_from_keyframe;
   bool fixed_scale;                    ///< both sides are in the same units
+  bool within_drift;                   ///< one map, in which the camera may have come there; else others must agree
   std::vector<LandmarkMatch> matches;  ///< keypoints of the keyframe, landmarks around the matched one
 };
 
 /// Makes sure that two keyframes show one place: matches by words, a similarity between the two cameras by RANSAC and
 /// optimisation, enough landmarks around the candidate found again in the keyframe and in its neighbours
-/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A); within one map, a
-/// way on which so much may have been lost, between two, matches over much of the image.
+/// (Mur-Artal, Montiel and Tardos 2015, section VII-B; neighbours: Campos et al. 2021, section VI-A); between two maps,
+/// and where more must have been lost on the way than a map loses, matches over much of the image.
 class LoopVerifier {
  public:
   /// With `fixed_scale` both sides are in the same units.

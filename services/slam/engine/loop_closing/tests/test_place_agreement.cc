@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "loop_closing/merge_agreement.h"
+#include "loop_closing/place_agreement.h"
 #include "loop_closing/tests/circular_drive.h"
 
 namespace kinemap {
@@ -24,12 +24,12 @@ class TwoStretches : public ::testing::Test {
   VerifiedLoop Recognised(int n, int further = 0) {
     const RigidTransform matched_from_keyframe =
         drive_.WorldFromCamera(10 + n).Inverse() * drive_.WorldFromCamera(10 + n + further);
-    return {kSecond + n, 10 + n, SimilarityTransform(matched_from_keyframe, 1 / 0.4), false, {}};
+    return {kSecond + n, 10 + n, SimilarityTransform(matched_from_keyframe, 1 / 0.4), false, false, {}};
   }
 
   CircularDrive drive_;
   Atlas atlas_;
-  MergeAgreement agreement_{{}};
+  PlaceAgreement agreement_{PlaceAgreementOptions()};
 };
 
 TEST_F(TwoStretches, AreJoinedWhenThreeKeyframesAgree) {
@@ -52,6 +52,23 @@ TEST_F(TwoStretches, AreNotJoinedInUnitsThatContradictEachOther) {
 
 TEST_F(TwoStretches, AreNotJoinedByOneKeyframeHoweverOften) {
   for (int i = 0; i < 8; ++i) EXPECT_FALSE(agreement_.Takes(&atlas_, Recognised(1))) << i;
+}
+
+TEST(ALostScale, IsBelievedWhenFiveKeyframesOfOneMapAgree) {
+  const CircularDrive drive;
+  Atlas atlas(0, TestScales());
+  constexpr int kRound = CircularDrive::kStepsARound;
+  atlas.Add(drive.Map(0, 0, kRound + 10));
+  const SlamMap* map = atlas.MapOf(0);
+  // Where the second round would be if the map had shrunk on the first.
+  const SimilarityTransform true_from_told(Eigen::Quaterniond::Identity(), {30, 0, 5}, 20.0);
+  PlaceAgreement agreement({});
+  for (int n = 0; n < 5; ++n) {
+    const SimilarityTransform matched_from_keyframe =
+        map->MapFromAnchor(n).Inverse() * true_from_told * map->MapFromAnchor(kRound + n);
+    const VerifiedLoop loop{kRound + n, n, matched_from_keyframe, false, false, {}};
+    EXPECT_EQ(agreement.Takes(&atlas, loop), n == 4) << n;
+  }
 }
 
 TEST_F(TwoStretches, CountsAnewAfterwards) {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "loop_closing/merge_agreement.h"
+#include "loop_closing/place_agreement.h"
 
 #include <cmath>
 
 namespace kinemap {
 namespace {
 
-/// As the two maps are now.
-SimilarityTransform OtherFromOne(const SlamMap& other, const SlamMap& one, const MergeAgreement::State& proposal) {
+/// As the two maps, or the two ends of one, are now.
+SimilarityTransform OtherFromOne(const SlamMap& other, const SlamMap& one, const PlaceAgreement::State& proposal) {
   return other.MapFromAnchor(proposal.matched_id) * proposal.matched_from_keyframe *
          one.MapFromAnchor(proposal.keyframe_id).Inverse();
 }
 
 }  // namespace
 
-bool MergeAgreement::Agrees(Atlas* atlas, const State& newest) const {
+bool PlaceAgreement::Agrees(Atlas* atlas, const State& newest) const {
   if (state_.count == 0) return false;
   const SlamMap* one = atlas->MapOf(newest.keyframe_id);
   const SlamMap* other = atlas->MapOf(newest.matched_id);
@@ -28,13 +28,14 @@ bool MergeAgreement::Agrees(Atlas* atlas, const State& newest) const {
          std::abs(std::log(before.scale / now.scale)) <= std::log(options_.most_scale_factor);
 }
 
-bool MergeAgreement::Takes(Atlas* atlas, const VerifiedLoop& loop) {
+bool PlaceAgreement::Takes(Atlas* atlas, const VerifiedLoop& loop) {
   State newest{loop.keyframe_id, loop.matched_id, loop.matched_from_keyframe, 1};
   // A keyframe that recognises several keyframes of the place is still one witness.
   const int more = newest.keyframe_id == state_.keyframe_id ? 0 : 1;
   if (Agrees(atlas, newest)) newest.count = state_.count + more;
   state_ = newest;
-  return state_.count >= options_.agreeing_keyframes;
+  const bool one_map = atlas->MapOf(loop.keyframe_id) == atlas->MapOf(loop.matched_id);
+  return state_.count >= (one_map ? options_.beyond_drift : options_.of_another_map);
 }
 
 }  // namespace kinemap

@@ -8,17 +8,19 @@
 
 namespace kinemap {
 
-struct MergeAgreementOptions {
-  int agreeing_keyframes = 3;
+struct PlaceAgreementOptions {
+  int of_another_map = 3;           ///< keyframes that agree before another map is joined
+  int beyond_drift = 5;             ///< the same before a place of this map that its drift bound refuses is believed
   double most_off = 0.15;           ///< between the places that two proposals give a camera, of its landmarks' depth
   double most_turned_rad = 0.05;    ///< between the directions they give it
   double most_scale_factor = 1.15;  ///< between the units they give it
 };
 
-/// Two maps are joined only when several keyframes, each recognised by itself, lay the one onto the other in the same
-/// way. Within a map the way between two places bounds what may be believed (drift_bound.h); between maps there is no
-/// way, and a house that looks like another would join two towns. A few metres further on the two no longer agree.
-class MergeAgreement {
+/// A place that only looks alike is found out a few metres further on: keyframes that recognise it, each by itself, no
+/// longer lay its surroundings onto the camera's in the same way. So several must agree where nothing else bounds what
+/// may be believed: between two maps there is no way, and within one a camera that saw little for a while may have
+/// drifted by more than drift_bound.h allows for.
+class PlaceAgreement {
  public:
   /// The newest proposal, and how many in a row it agrees with, itself included.
   struct State {
@@ -27,9 +29,9 @@ class MergeAgreement {
     int count = 0;
   };
 
-  explicit MergeAgreement(const MergeAgreementOptions& options) : options_(options) {}
+  explicit PlaceAgreement(const PlaceAgreementOptions& options) : options_(options) {}
 
-  /// Takes in a place of another map that a new keyframe recognised. Whether enough agree by now.
+  /// Takes in a place that a new keyframe recognised. Whether enough agree by now.
   bool Takes(Atlas* atlas, const VerifiedLoop& loop);
 
   void Forget() { state_ = State(); }
@@ -40,7 +42,7 @@ class MergeAgreement {
  private:
   bool Agrees(Atlas* atlas, const State& newest) const;
 
-  MergeAgreementOptions options_;
+  PlaceAgreementOptions options_;
   State state_;
 };
 
