@@ -41,7 +41,7 @@ void LoopCloser::Look(Atlas* atlas, const PlaceIndex& places, KeyframeId keyfram
         MeasuresDepth(map->keyframe(keyframe_id)) && MeasuresDepth(atlas->MapOf(candidate)->keyframe(candidate));
     const auto loop = verifier_.Verify(atlas, places, keyframe_id, candidate, fixed_scale, random);
     if (!loop) continue;
-    if (!loop->within_drift && !agreement_.Takes(atlas, *loop)) continue;
+    if (!agreement_.Takes(atlas, *loop)) continue;
     StartJoining(atlas, *loop, frame_index);
     return;
   }

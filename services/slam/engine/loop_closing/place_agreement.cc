@@ -28,14 +28,31 @@ bool PlaceAgreement::Agrees(Atlas* atlas, const State& newest) const {
          std::abs(std::log(before.scale / now.scale)) <= std::log(options_.most_scale_factor);
 }
 
-bool PlaceAgreement::Takes(Atlas* atlas, const VerifiedLoop& loop) {
-  State newest{loop.keyframe_id, loop.matched_id, loop.matched_from_keyframe, 1};
-  // A keyframe that recognises several keyframes of the place is still one witness.
-  const int more = newest.keyframe_id == state_.keyframe_id ? 0 : 1;
-  if (Agrees(atlas, newest)) newest.count = state_.count + more;
-  state_ = newest;
+bool PlaceAgreement::IsApart(Atlas* atlas, const State& newest) const {
+  const SlamMap* map = atlas->MapOf(newest.keyframe_id);
+  const Eigen::Vector3d way =
+      map->MapFromKeyframe(newest.keyframe_id).translation - map->MapFromKeyframe(state_.keyframe_id).translation;
+  return way.norm() >= options_.least_apart * map->MedianDepth(newest.keyframe_id);
+}
+
+int PlaceAgreement::Needed(Atlas* atlas, const VerifiedLoop& loop) const {
+  if (loop.within_drift) return options_.within_drift;
   const bool one_map = atlas->MapOf(loop.keyframe_id) == atlas->MapOf(loop.matched_id);
-  return state_.count >= (one_map ? options_.beyond_drift : options_.of_another_map);
+  return one_map ? options_.beyond_drift : options_.of_another_map;
+}
+
+bool PlaceAgreement::Takes(Atlas* atlas, const VerifiedLoop& loop) {
+  const State newest{loop.keyframe_id, loop.matched_id, loop.matched_from_keyframe, 1};
+  if (!Agrees(atlas, newest)) {
+    // The first place that a keyframe recognises is the likeliest.
+    if (newest.keyframe_id == state_.keyframe_id) return false;
+    state_ = newest;
+  } else if (IsApart(atlas, newest)) {
+    const int count = state_.count + 1;
+    state_ = newest;
+    state_.count = count;
+  }
+  return state_.count >= Needed(atlas, loop);
 }
 
 }  // namespace kinemap

@@ -9,20 +9,21 @@
 namespace kinemap {
 
 struct PlaceAgreementOptions {
-  int of_another_map = 3;           ///< keyframes that agree before another map is joined
-  int beyond_drift = 5;             ///< the same before a place of this map that its drift bound refuses is believed
-  double most_off = 0.15;           ///< between the places that two proposals give a camera, of its landmarks' depth
-  double most_turned_rad = 0.05;    ///< between the directions they give it
+  int within_drift = 3;           ///< keyframes that agree before a place is believed that the camera may have come to
+  int of_another_map = 3;         ///< the same before another map is joined
+  int beyond_drift = 5;           ///< the same before a place of this map that its drift bound refuses is believed
+  double least_apart = 0.1;       ///< between one of them and the next, of their landmarks' depth
+  double most_off = 0.15;         ///< between the places that two of them give a camera, of its landmarks' depth
+  double most_turned_rad = 0.05;  ///< between the directions they give it
   double most_scale_factor = 1.15;  ///< between the units they give it
 };
 
 /// A place that only looks alike is found out a few metres further on: keyframes that recognise it, each by itself, no
-/// longer lay its surroundings onto the camera's in the same way. So several must agree where nothing else bounds what
-/// may be believed: between two maps there is no way, and within one a camera that saw little for a while may have
-/// drifted by more than drift_bound.h allows for.
+/// longer lay its surroundings onto the camera's in the same way. So several must agree, from places apart: a camera
+/// that stands in a queue sees one picture again and again.
 class PlaceAgreement {
  public:
-  /// The newest proposal, and how many in a row it agrees with, itself included.
+  /// The newest proposal that counts, and how many in a row it agrees with, itself included.
   struct State {
     KeyframeId keyframe_id = kNoId, matched_id = kNoId;
     SimilarityTransform matched_from_keyframe;  ///< between what is anchored at the two
@@ -41,6 +42,8 @@ class PlaceAgreement {
 
  private:
   bool Agrees(Atlas* atlas, const State& newest) const;
+  bool IsApart(Atlas* atlas, const State& newest) const;
+  int Needed(Atlas* atlas, const VerifiedLoop& loop) const;
 
   PlaceAgreementOptions options_;
   State state_;

@@ -16,6 +16,9 @@ using synthetic::TestCamera;
 using synthetic::TestScales;
 
 constexpr int kRound = CircularDrive::kStepsARound;
+constexpr int kSecondRound = 9;
+/// Three in a row until the detector names a place, which three then agree on.
+constexpr int kWitnesses = 5;
 const SimilarityTransform kDrift(RotationFromVector({0, 0.002, 0.001}), {0, 0, 0}, 0.996);
 
 /// Lets a closer look at the keyframes as if they had just been inserted, and at the end.
@@ -34,7 +37,7 @@ std::vector<KeyframeId> Last(const SlamMap& map, int count) {
 class ADriftedRound : public ::testing::Test {
  protected:
   ADriftedRound() : atlas_(0, TestScales()), places_(drive_.EmptyIndex()), closer_({}, TestCamera()) {
-    map_ = &atlas_.Add(drive_.Map(0, 0, kRound + 5, {}, kDrift));
+    map_ = &atlas_.Add(drive_.Map(0, 0, kRound + kSecondRound, {}, kDrift));
     places_.Follow(map_);
   }
 
@@ -48,15 +51,16 @@ class ADriftedRound : public ::testing::Test {
 TEST_F(ADriftedRound, ClosesAndTakesItsScaleDriftBack) {
   const double before = drive_.Error(*map_, 0);
   ASSERT_GT(before, 1);
-  const LoopEvents events = LookAndSettle(&atlas_, places_, Last(*map_, 3), &closer_);
+  const LoopEvents events = LookAndSettle(&atlas_, places_, Last(*map_, kWitnesses), &closer_);
   EXPECT_EQ(events.loops_closed, 1);
   EXPECT_EQ(events.maps_merged, 0);
   EXPECT_TRUE(events.map_adjusted);
   EXPECT_LT(drive_.Error(*map_, 0), 0.1 * before);
   // By then the camera had shrunk the world to three quarters.
-  EXPECT_NEAR(map_->MapFromAnchor(map_->last_keyframe_id()).scale, 1 / std::pow(kDrift.scale, kRound + 4), 0.05);
+  EXPECT_NEAR(map_->MapFromAnchor(map_->last_keyframe_id()).scale,
+              1 / std::pow(kDrift.scale, kRound + kSecondRound - 1), 0.05);
   EXPECT_FALSE(map_->keyframe(map_->last_keyframe_id()).loop_edges.empty());
-  EXPECT_GT(map_->covisibility().Shared(map_->last_keyframe_id(), 4), 30);
+  EXPECT_GT(map_->covisibility().Shared(map_->last_keyframe_id(), kSecondRound - 1), 30);
   EXPECT_EQ(map_->TakeChanges().keyframes.size(), static_cast<size_t>(map_->keyframe_count()));
 }
 
@@ -70,22 +74,28 @@ TEST_F(ADriftedRound, IsRecognisedOnlyByTheThirdKeyframeInARow) {
   EXPECT_TRUE(detector.Detect(&atlas_, places_, last[2]).empty());
 }
 
+TEST_F(ADriftedRound, IsNotClosedBeforeKeyframesAgree) {
+  const std::vector<KeyframeId> last = Last(*map_, kWitnesses);
+  EXPECT_EQ(LookAndSettle(&atlas_, places_, {last.begin(), last.end() - 1}, &closer_).loops_closed, 0);
+}
+
 TEST_F(ADriftedRound, IsMergedAtAFixedFrameAndNoOther) {
-  const std::vector<KeyframeId> last = Last(*map_, 3);
-  for (int64_t frame = 0; frame < 3; ++frame) closer_.Look(&atlas_, places_, last[frame], frame);
-  EXPECT_FALSE(closer_.IsDue(4));
-  EXPECT_EQ(closer_.Merge(&atlas_, 4).loops_closed, 0);
-  EXPECT_TRUE(closer_.IsDue(5));
-  EXPECT_EQ(closer_.Merge(&atlas_, 5).loops_closed, 1);
-  EXPECT_FALSE(closer_.IsDue(6));
+  const std::vector<KeyframeId> last = Last(*map_, kWitnesses);
+  for (int64_t frame = 0; frame < kWitnesses; ++frame) closer_.Look(&atlas_, places_, last[frame], frame);
+  const int64_t due = kWitnesses + 2;
+  EXPECT_FALSE(closer_.IsDue(due - 1));
+  EXPECT_EQ(closer_.Merge(&atlas_, due - 1).loops_closed, 0);
+  EXPECT_TRUE(closer_.IsDue(due));
+  EXPECT_EQ(closer_.Merge(&atlas_, due).loops_closed, 1);
+  EXPECT_FALSE(closer_.IsDue(due + 1));
 }
 
 TEST_F(ADriftedRound, GivesTheSameMapTwice) {
   Atlas other(0, TestScales());
-  SlamMap& again = other.Add(drive_.Map(0, 0, kRound + 5, {}, kDrift));
+  SlamMap& again = other.Add(drive_.Map(0, 0, kRound + kSecondRound, {}, kDrift));
   LoopCloser closer({}, TestCamera());
-  LookAndSettle(&atlas_, places_, Last(*map_, 3), &closer_);
-  LookAndSettle(&other, places_, Last(again, 3), &closer);
+  EXPECT_EQ(LookAndSettle(&atlas_, places_, Last(*map_, kWitnesses), &closer_).loops_closed, 1);
+  LookAndSettle(&other, places_, Last(again, kWitnesses), &closer);
   for (const KeyframeId id : map_->LiveKeyframes()) {
     EXPECT_EQ(map_->MapFromKeyframe(id).Matrix(), again.MapFromKeyframe(id).Matrix());
   }

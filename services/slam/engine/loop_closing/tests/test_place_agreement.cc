@@ -54,6 +54,16 @@ TEST_F(TwoStretches, AreNotJoinedByOneKeyframeHoweverOften) {
   for (int i = 0; i < 8; ++i) EXPECT_FALSE(agreement_.Takes(&atlas_, Recognised(1))) << i;
 }
 
+TEST_F(TwoStretches, AreNotJoinedByACameraThatStands) {
+  SlamMap* second = atlas_.MapOf(kSecond);
+  for (int n = 1; n < 8; ++n) {
+    second->SetKeyframePose(kSecond + n, second->keyframe(kSecond + 1).map_from_keyframe);
+    VerifiedLoop loop = Recognised(1);
+    loop.keyframe_id = kSecond + n;
+    EXPECT_FALSE(agreement_.Takes(&atlas_, loop)) << n;
+  }
+}
+
 TEST(ALostScale, IsBelievedWhenFiveKeyframesOfOneMapAgree) {
   const CircularDrive drive;
   Atlas atlas(0, TestScales());
