@@ -38,6 +38,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "max_slope": (0.0, 0.12),
     "traffic": _SHARE,
     "parked": _SHARE,
+    "parked_lanes": _SHARE,
     "parked_cars": _ACTORS,
     "oncoming_cars": _ACTORS,
     "leading_cars": _ACTORS,
@@ -59,7 +60,7 @@ _RANGES: dict[str, tuple[float, float]] = {
 _COEFFICIENTS = {"pinhole": 0, "radial": 5, "fisheye": 4}
 _LARGEST_COEFFICIENT = 1e3
 _OF_WORLDS: dict[str, tuple[WorldName, ...]] = {
-    **dict.fromkeys(("loop_m", "max_slope", "parked"), ("town",)),
+    **dict.fromkeys(("loop_m", "max_slope", "parked", "parked_lanes"), ("town",)),
     **dict.fromkeys(("start_m", "traffic"), ("town", "corridor")),
     **dict.fromkeys(("empty_start_m", "parked_cars", "oncoming_cars", "leading_cars", "crossing_cars"), ("street",)),
     **dict.fromkeys(("starting_cars", "walking_people", "crossing_people", "standing_people"), ("street",)),
@@ -135,6 +136,8 @@ class DriveOptions:
     """How much moves: 0 nothing, 1 about a third of the image."""
     parked: float = 0.5
     """Share of the parking bays that are taken."""
+    parked_lanes: float = 0.0
+    """Share of the lanes beside the camera's own on which vehicles are parked bumper to bumper; needs traffic 0."""
 
     # The street: how many of each kind.
     empty_start_m: float = 60.0
@@ -172,6 +175,9 @@ class DriveOptions:
         if self.blackout_frames and self.blackout_start >= self.frames:
             expected = f"a blackout that begins before frame {self.frames}, the end"
             raise InputError(f"simulator blackout_start={self.blackout_start}: expected {expected}")
+        if self.parked_lanes and self.traffic:
+            expected = "0 while there is traffic to use the lanes"
+            raise InputError(f"simulator parked_lanes={self.parked_lanes!r}: expected {expected} ({self.traffic:g})")
         if self.frames / self.rate_hz * self.speed_m_s > MAX_DRIVE_M:
             raise InputError(f"simulator frames={self.frames}: expected a drive of at most {MAX_DRIVE_M:g} m")
 

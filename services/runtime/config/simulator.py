@@ -44,6 +44,9 @@ class SimulatorConfig(BaseModel):
     max_slope: float = Field(0.05, ge=0, description="town: the steepest a street gets, rise over run")
     traffic: float = Field(0.3, ge=0, le=1, description="town, corridor: how much moves; 1: about a third of the image")
     parked: float = Field(0.5, ge=0, le=1, description="town: share of the parking bays that are taken")
+    parked_lanes: float = Field(
+        0.0, ge=0, le=1, description="town: share of the other lanes that parked vehicles fill; needs traffic 0"
+    )
 
     empty_start_m: float = Field(60.0, ge=0, description="street: nothing moves near the camera on these first metres")
     parked_cars: int = Field(26, ge=0, description="street: cars that stand all the time")

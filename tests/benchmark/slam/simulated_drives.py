@@ -28,6 +28,7 @@ class DriveKind:
 
 KINDS = {
     "static": DriveKind(790, ("traffic=0",)),
+    "parked": DriveKind(790, ("traffic=0", "parked=1", "parked_lanes=1")),
     "heavy": DriveKind(1550, ("traffic=1",)),
     "second": DriveKind(700, ("traffic=0.3", "traffic_seed=99", "light=overcast", "lateral_offset_m=1.0")),
 }

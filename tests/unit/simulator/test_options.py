@@ -52,6 +52,7 @@ def test_bad_option_is_refused_in_one_line_that_names_it(name: str, value: objec
     ("options", "says"),
     [
         ({"world": "town", "parked_cars": 3}, "parked_cars=3: expected this option in the world street only"),
+        ({"world": "town", "parked_lanes": 0.5}, "parked_lanes=0.5: expected 0 while there is traffic"),
         ({"world": "corridor", "loop_m": 900.0}, "loop_m=900.0: expected this option in the world town only"),
         ({"world": "street", "traffic": 0.0}, "traffic=0.0: expected this option in the world town or corridor only"),
         ({"blackout_start": 320, "blackout_frames": 1}, "blackout_start=320: expected a blackout that begins before"),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nobody touches anybody in the town, the camera's car included."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,21 @@ def test_nobody_touches_anybody(options: DriveOptions) -> None:
     least, near = closest(options, 24.0, 0.6)
     assert least > 0.0
     assert near > 20
+
+
+@pytest.mark.parametrize("lateral_offset_m", [0.0, 1.0, -1.0])
+def test_parked_lanes_are_full_and_leave_the_camera_its_way(lateral_offset_m: float) -> None:
+    few = DriveOptions(world="town", seed=7, traffic=0.0, parked=1.0, lateral_offset_m=lateral_offset_m)
+    full = replace(few, parked_lanes=1.0)
+    actors, camera = planned(full)
+    assert all(actor.always_still for actor in actors)
+    assert len(actors) > len(planned(few)[0]) + 80
+    standing = np.array([footprint(actor, 0.0) for actor in actors if actor.category != "person"])
+    pairs = np.array([(a, b) for a in range(len(standing)) for b in range(a)])
+    assert gaps(standing, pairs).min() > 0.0
+    against_camera = np.array([(0, 1 + k) for k in range(len(standing))])
+    for t_s in np.arange(0.0, 79.0, 0.5):
+        assert gaps(np.concatenate([[camera_car(camera, t_s)], standing]), against_camera).min() > 0.2
 
 
 def test_the_check_itself_finds_contact() -> None:

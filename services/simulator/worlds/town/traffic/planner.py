@@ -22,6 +22,7 @@ from services.simulator.worlds.town.traffic.fleet import Vehicle
 from services.simulator.worlds.town.traffic.junctions import Junction
 from services.simulator.worlds.town.traffic.looks import Wardrobe
 from services.simulator.worlds.town.traffic.network import Network
+from services.simulator.worlds.town.traffic.parked_lanes import vehicles_parked_on_lanes
 from services.simulator.worlds.town.traffic.parking import Parked, PullOut, parked_vehicles, parking_bays
 from services.simulator.worlds.town.traffic.pavements import pedestrians
 from services.simulator.worlds.town.traffic.population import barred_track, loop_population, shared_track
@@ -55,7 +56,7 @@ class _Planner:
         self._actors: list[Actor] = []
         self._network = Network(plan)
         self._placed = loop_population(options, Tracks(loop_tracks(plan)))
-        self._parked = parked_vehicles(options, parking_bays(plan))
+        self._parked = parked_vehicles(options, parking_bays(plan)) + vehicles_parked_on_lanes(options, plan)
         starters = [one for one in self._parked if one.starts]
         self._pull_outs = [PullOut(one, len(self._placed) + k) for k, one in enumerate(starters)]
         self._arrivals = side_arrivals(
