@@ -30,7 +30,7 @@ class SegmenterConfig(BaseModel):
     )
     device: str = Field("auto", description="solov2: cpu, cuda, or auto: cuda where there is one")
     precision: Literal["auto", "fp32", "bf16", "fp16"] = Field(
-        "auto", description="solov2: auto takes 16 bits where the device multiplies them by itself"
+        "auto", description="solov2: auto measures once what is fastest, and keeps to it"
     )
     threads: int = Field(1, ge=1, le=256, description="solov2: threads of the network on a CPU")
     every: int | None = Field(

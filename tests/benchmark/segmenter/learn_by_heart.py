@@ -27,7 +27,8 @@ from services.segmenter.training.sample import Sample
 from services.segmenter.training.targets import grids_of
 from services.segmenter.training.trainer import Trainer, TrainingOptions
 
-_LEAST_PX = 100
+_LEAST_PX = 400
+"""of an instance: outlines of smaller ones are coarser than the mask features, whatever is learned"""
 
 
 class _Few:
