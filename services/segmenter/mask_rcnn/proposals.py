@@ -31,8 +31,8 @@ class RegionProposals(nn.Module):
         boxes, scores, numbers = [], [], []
         for number, (features, stride) in enumerate(zip(levels, _STRIDES, strict=True)):
             hidden = self.rpn_conv(features).relu()
-            sure = self.rpn_cls(hidden)[0].permute(1, 2, 0).flatten().sigmoid()
-            deltas = self.rpn_reg(hidden)[0].permute(1, 2, 0).reshape(-1, 4)
+            sure = self.rpn_cls(hidden)[0].permute(1, 2, 0).flatten().float().sigmoid()
+            deltas = self.rpn_reg(hidden)[0].permute(1, 2, 0).reshape(-1, 4).float()
             first = torch.sort(sure, descending=True, stable=True).indices[:_MOST_A_LEVEL]
             found = decode(_anchors(features, stride)[first], deltas[first], _STDS, image_hw)
             boxes.append(found)

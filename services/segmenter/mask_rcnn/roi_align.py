@@ -28,7 +28,7 @@ def roi_align(levels: Sequence[Tensor], boxes: Tensor, size: int) -> Tensor:
     for number, (features, stride) in enumerate(zip(levels, _STRIDES, strict=False)):
         chosen = (level_of == number).nonzero()[:, 0]
         if len(chosen):
-            out[chosen] = _aligned(features, boxes[chosen] / stride, size)
+            out[chosen] = _aligned(features, boxes[chosen] / stride, size).to(out.dtype)
     return out
 
 

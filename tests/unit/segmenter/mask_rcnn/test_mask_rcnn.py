@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
+import pytest
 import torch
 
+from services.segmenter.inference import Precision, TorchOptions, autocast
 from services.segmenter.mask_rcnn.network import DetectionOptions, MaskRcnn, pasted
 from services.segmenter.mask_rcnn.proposals import RegionProposals
 
@@ -50,10 +52,11 @@ def test_masks_are_stretched_over_their_boxes() -> None:
     assert pasted(torch.zeros(0, 28, 28), torch.zeros(0, 4), (60, 80)).shape == (0, 60, 80)
 
 
-def test_an_image_gives_instances_in_its_own_size() -> None:
+@pytest.mark.parametrize("precision", ["fp32", "bf16"])
+def test_an_image_gives_instances_in_its_own_size(precision: Precision) -> None:
     torch.manual_seed(0)
     network = MaskRcnn(18, CATEGORIES).eval()
-    with torch.inference_mode():
+    with torch.inference_mode(), autocast(TorchOptions(torch.device("cpu"), precision)):
         found = network(torch.randn(1, 3, 64, 96), (60, 96), (120, 192), DetectionOptions(min_score=0.2))
     assert found.masks.shape == (len(found.labels), 120, 192)
     assert len(found.labels) > 0
