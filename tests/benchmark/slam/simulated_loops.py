@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rounds of 500 m through the simulated town: the three stages side by side, with and without loop closing.
 
-`python -m tests.benchmark.slam.simulated_loops --drives FOLDER [--seeds 1-10] [--kinds static,heavy] [--jobs 2]
-[--keep FOLDER]`
+`python -m tests.benchmark.slam.simulated_loops --drives FOLDER [--seeds 1-10] [--kinds static,parked,heavy]
+[--jobs 2] [--keep FOLDER]`
 renders the drives that are not in the folder yet. Objects and who of them moves are the simulator's own, so that the
-engine alone is judged; `static`: no traffic, cars parked; `heavy`: a third of the image moves. Error after Sim(3)
-alignment; a run that tracked less than 95 % of its frames is lost and counts as the worst. Without loop closing only
-stage `moving` is run.
+engine alone is judged; `static`: no traffic, cars parked at the kerbs; `parked`: they fill all lanes but the camera's
+own; `heavy`: a third of the image moves. Error after Sim(3) alignment; a run that tracked less than 95 % of its frames
+is lost and counts as the worst. Without loop closing only stage `moving` is run.
 """
 
 from pathlib import Path
@@ -63,7 +63,7 @@ def main() -> None:
     """Run every drive in every stage."""
     parser = parser_of(__doc__)
     add_drive_arguments(parser, "1-10")
-    parser.add_argument("--kinds", default="static,heavy")
+    parser.add_argument("--kinds", default="static,parked,heavy")
     parser.add_argument("--stages", default=",".join(STAGES), help="base must be among them: the others are compared")
     parser.add_argument("--only-with-loops", action="store_true", help="leave out the passes without loop closing")
     parser.add_argument("--keep", type=Path, help="folder of finished passes: started again, it goes on from there")
