@@ -11,8 +11,6 @@ from services.segmenter.network_instances import Inference, NetworkInstances
 from services.segmenter.weights.choice import choose_model
 
 if TYPE_CHECKING:
-    import torch
-
     from services.segmenter.inference import TorchOptions
     from services.segmenter.networks import Network
 
@@ -34,13 +32,14 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
     from services.segmenter.inference import TorchOptions, precisions
     from services.segmenter.processor import processor_name
     from services.segmenter.solov2.folding import folded
+    from services.segmenter.torch_device import torch_device
     from services.segmenter.weights.model_file import load_network
 
     torch.set_num_threads(settings.threads)
     model = choose_model(settings.weights)
     network, description = load_network(model.path)
     _require_known(settings.categories, description.categories, str(model.path))
-    device = _device(settings.device)
+    device = torch_device(settings.device, "segmenter.device")
     ready, box = folded(network), description.input_box
     asked = precisions(device) if settings.precision == "auto" else (settings.precision,)
     ways: dict[str, Inference] = {
@@ -71,19 +70,6 @@ def inference_of(network: "Network", box: tuple[int, int], min_score: float, run
     if isinstance(network, MaskRcnn):
         return MaskRcnnInference(network, box, DetectionOptions(min_score=min_score), runtime)
     return TorchInference(network, box, InstanceOptions(min_score=min_score), runtime)
-
-
-def _device(name: str) -> "torch.device":
-    import torch
-
-    if name == "auto":
-        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
-    try:
-        device = torch.device(name)
-        torch.zeros(1, device=device)
-    except (RuntimeError, AssertionError) as error:
-        raise InputError(f"segmenter.device {name}: not to be had ({str(error).splitlines()[0]})") from error
-    return device
 
 
 def _require_known(asked: tuple[str, ...], known: tuple[str, ...], model: str) -> None:

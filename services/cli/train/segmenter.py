@@ -81,6 +81,7 @@ def segmenter(
 
     from services.cli.train.segmenter_validation import Validation
     from services.segmenter.solov2.variants import VARIANTS
+    from services.segmenter.torch_device import torch_device
     from services.segmenter.training.trainer import Precision, Trainer, TrainingOptions
 
     if variant not in VARIANTS:
@@ -108,7 +109,7 @@ def segmenter(
         precision=cast(Precision, precision),
     )
     weights = _weights(start_from, variant, categories)
-    trainer = Trainer(options, samples, out, _device(device), workers, weights)
+    trainer = Trainer(options, samples, out, torch_device(device, "--device"), workers, weights)
     _train(trainer, validation, out, save_every, validate_every or save_every)
     print(out / MODEL_NAME)
 
@@ -120,19 +121,6 @@ def _training_size(text: str) -> tuple[int, int]:
     if width % _MULTIPLE_PX or height % _MULTIPLE_PX:
         raise InputError(f"--size {text}: expected multiples of {_MULTIPLE_PX}, such as {_SIZES[0]}")
     return width, height
-
-
-def _device(name: str) -> "torch.device":
-    import torch
-
-    if name == "auto":
-        name = "cuda" if torch.cuda.is_available() else "cpu"
-    try:
-        device = torch.device(name)
-        torch.zeros(1, device=device)
-    except (RuntimeError, AssertionError) as error:
-        raise InputError(f"--device {name}: not to be had ({str(error).splitlines()[0]})") from error
-    return device
 
 
 def _weights(path: Path | None, variant: str, categories: tuple[str, ...]) -> "dict[str, torch.Tensor] | None":
