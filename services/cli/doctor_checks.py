@@ -35,6 +35,7 @@ def all_checks(config: Config, folder: Path) -> Iterator[Check]:
     yield check_memory()
     yield check_gpu()
     yield check_segmenter(config)
+    yield check_segmenter_ways(config)
 
 
 def check_python() -> Check:
@@ -108,3 +109,19 @@ def check_segmenter(config: Config) -> Check:
     if settings.backend in ("auto", "solov2"):
         return Check(name, None, f"{choice.path} ({choice.why})")
     return Check(name, None, f"not used: segmenter.backend is {settings.backend}; there is {choice.path}")
+
+
+def check_segmenter_ways(config: Config) -> Check:
+    """In what the network runs here, by what was measured when it first did."""
+    from services.segmenter.measured_ways import described, model_key, remembered_of
+    from services.segmenter.runtimes.way import installed
+    from services.segmenter.weights.choice import choose_model
+
+    name = "segmenter's runtime"
+    try:
+        known = remembered_of(model_key(choose_model(config.segmenter.weights).path))
+    except InputError as error:
+        return Check(name, None, f"no network to run ({error})")
+    found = "; ".join(f"{described(ways)} ({key})" for key, ways in known.items())
+    faster = "" if any(installed()) else ". On a CPU `pip install kinemap[cpu]` gives it faster libraries than torch"
+    return Check(name, None, f"{found or 'not measured yet: its first run here does that'}{faster}")

@@ -12,6 +12,9 @@ from packaging.requirements import Requirement
 
 _DEBIAN_PACKAGES = Path(__file__).resolve().parents[2] / "deploy" / "setup" / "debian-packages.txt"
 
+_NOT_NEEDED = ("dev", "cpu")
+"""extras that everything runs without"""
+
 
 @dataclass(frozen=True)
 class Check:
@@ -50,7 +53,7 @@ def _installed_packages(names: list[str]) -> dict[str, str]:
 
 
 def check_python_packages() -> Iterator[Check]:
-    """Every requirement of kinemap's own metadata, all its extras but `dev` included."""
+    """Every requirement of kinemap's own metadata, all its extras but `dev` and `cpu` included."""
     try:
         declared = [Requirement(text) for text in importlib.metadata.requires("kinemap") or []]
     except importlib.metadata.PackageNotFoundError:
@@ -59,7 +62,8 @@ def check_python_packages() -> Iterator[Check]:
     wrong = []
     needed: dict[str, Requirement] = {}
     for requirement in declared:
-        if requirement.name != "kinemap" and "dev" not in str(requirement.marker):
+        extra = str(requirement.marker).rpartition("==")[2].strip(' "')
+        if requirement.name != "kinemap" and extra not in _NOT_NEEDED:
             needed[requirement.name] = requirement
     for name, requirement in sorted(needed.items()):
         try:

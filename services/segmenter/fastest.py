@@ -1,74 +1,72 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fastest way to run a network on this machine: measured once, then remembered in the cache."""
+"""The fastest way to run a network on this machine that finds the same as the exact one: measured once."""
 
-import json
 import time
-from collections.abc import Mapping
-from contextlib import suppress
-from typing import Final, Protocol, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from services.segmenter.weights.cache_folder import cache_folder
+from services.runtime.log import get_logger
+from services.segmenter.agreement import overlaps, sample_image
+from services.segmenter.measured_ways import MeasuredWay, best_way, remember, remembered
+from services.segmenter.solov2.instances import SegmentedInstances
 
 _RUNS: Final = 3
-_WORTH: Final = 1.2
-"""times faster than the exact way that another must be to be taken"""
-_FILE_NAME: Final = "fastest.json"
-
-
-Way = TypeVar("Way", bound=str)
+_log = get_logger("segmenter")
 
 
 class _Inference(Protocol):
-    def segment(self, image: npt.NDArray[np.uint8], /) -> object: ...
+    def segment(self, image: npt.NDArray[np.uint8], /) -> SegmentedInstances: ...
 
 
-def fastest(key: str, ways: Mapping[Way, _Inference], box: tuple[int, int]) -> Way:
-    """The name of the fastest of `ways`, of which the first is the exact one.
+def fastest(key: str, ways: Mapping[str, Callable[[], _Inference]], asked: Sequence[str]) -> str:
+    """The name of the fastest of the ways that are asked for.
 
     Args:
-        key: all that the times depend on: network, size, processor, threads, versions. What was measured under it
-            before is taken, so that a later run computes the same way.
-        ways: the runs to choose from, by name.
-        box: (width, height) of the image to measure with.
+        key: all that times and masks depend on: weights, size, processor, threads, versions. What was measured under
+            it before is taken, so that a later run computes the same way.
+        ways: makes each, by name; the first is the exact one, which the others must agree with.
+        asked: names, the one to fall back on first.
     """
-    names = list(ways)
-    known = _read().get(key)
-    if isinstance(known, dict) and all(type(known.get(name)) is float for name in names):
-        took_ms = {name: float(known[name]) for name in names}
-    else:
-        took_ms = {name: _milliseconds(way, box) for name, way in ways.items()}
-        _write(key, {str(name): ms for name, ms in took_ms.items()})
-    best = min(names, key=took_ms.__getitem__)
-    return best if took_ms[names[0]] > _WORTH * took_ms[best] else names[0]
+    measured = remembered(key)
+    if any(name not in measured for name in ways):
+        measured = _measured(ways)
+        remember(key, measured)
+    for name, way in measured.items():
+        if way.fault and name in asked:
+            _log.warning("way_left_out", way=name, why=way.fault)
+    return best_way(measured, asked)
 
 
-def _milliseconds(way: _Inference, box: tuple[int, int]) -> float:
-    image = np.full((box[1], box[0], 3), 114, np.uint8)
-    way.segment(image)
+def _measured(ways: Mapping[str, Callable[[], _Inference]]) -> dict[str, MeasuredWay]:
+    image = sample_image()
+    exact: SegmentedInstances | None = None
+    measured = {}
+    for name, make in ways.items():
+        try:
+            inference = make()
+            found = inference.segment(image)
+            took_ms = _milliseconds(inference, image)
+        except Exception as error:
+            if exact is None:
+                raise
+            # what a library that need not be there raises is its own affair
+            _log.warning("way_does_not_run", way=name, error=str(error).splitlines()[0] if str(error) else repr(error))
+            measured[name] = MeasuredWay(None, None)
+            continue
+        least_iou = 1.0 if exact is None else min(overlaps(exact, found), default=None)
+        exact = exact or found
+        measured[name] = MeasuredWay(took_ms, None if least_iou is None else round(least_iou, 4))
+        _log.info("way_measured", way=name, ms=took_ms, least_iou=measured[name].least_iou)
+    return measured
+
+
+def _milliseconds(inference: _Inference, image: npt.NDArray[np.uint8]) -> float:
     times = []
     for _ in range(_RUNS):
         begun = time.perf_counter()
-        way.segment(image)
+        inference.segment(image)
         times.append(time.perf_counter() - begun)
     return round(1e3 * min(times), 1)
-
-
-def _read() -> dict[str, object]:
-    try:
-        content = json.loads((cache_folder() / _FILE_NAME).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return content if isinstance(content, dict) else {}
-
-
-def _write(key: str, took_ms: Mapping[str, float]) -> None:
-    path = cache_folder() / _FILE_NAME
-    # where nothing can be kept, the next start measures again
-    with suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f"{_FILE_NAME}.part")
-        part.write_text(json.dumps({**_read(), key: dict(took_ms)}, indent=1), encoding="utf-8")
-        part.replace(path)

@@ -70,9 +70,10 @@ class Validation:
         import cv2
         import numpy as np
 
-        from services.segmenter.inference import TorchInference
+        from services.segmenter.inference import SoloInference
+        from services.segmenter.runtimes.torch_dense import TorchDense
 
-        inference = TorchInference(network, self._box)
+        inference = SoloInference(TorchDense(network), network.variant, self._box)
         found = []
         for image in self._truth.images:
             pixels = cv2.imread(str(self._paths[image.image_id]))

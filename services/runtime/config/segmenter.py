@@ -29,8 +29,13 @@ class SegmenterConfig(BaseModel):
         "the cache, else what comes with this package",
     )
     device: str = Field("auto", description="solov2: cpu, cuda, or auto: cuda where there is one")
+    runtime: Literal["auto", "torch", "openvino", "onnxruntime"] = Field(
+        "auto",
+        description="solov2: the library that runs it; auto takes, of those that are installed, the fastest that finds "
+        "the same, measured once. On a GPU there is torch only",
+    )
     precision: Literal["auto", "fp32", "bf16", "fp16"] = Field(
-        "auto", description="solov2: auto measures once what is fastest, and keeps to it"
+        "auto", description="solov2: auto takes 16 bits where they are faster and find the same, measured once"
     )
     threads: int = Field(1, ge=1, le=256, description="solov2: threads of the network on a CPU")
     every: int | None = Field(

@@ -5,8 +5,8 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from services.segmenter.inference import TorchOptions, autocast
 from services.segmenter.mask_rcnn.network import DetectionOptions, MaskRcnn
+from services.segmenter.runtimes.torch_dense import TorchOptions, autocast
 from services.segmenter.solov2.instances import SegmentedInstances
 from services.segmenter.solov2.preprocessing import prepare
 

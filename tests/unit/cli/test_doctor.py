@@ -16,9 +16,11 @@ from services.cli.doctor_checks import (
     check_port,
     check_python,
     check_segmenter,
+    check_segmenter_ways,
 )
 from services.cli.doctor_packages import check_debian_packages, check_python_packages
 from services.runtime.config import Config
+from services.segmenter.measured_ways import MeasuredWay, model_key, remember
 from services.segmenter.weights import choice
 
 
@@ -65,12 +67,19 @@ def test_the_set_up_has_its_list_where_the_doctor_looks() -> None:
 
 
 def test_python_packages_that_are_missing_or_too_old_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    declared = ['numpy>=1 ; extra == "slam"', "no-such-package>=3", "pytest>=9999", 'not-wanted ; extra == "dev"']
+    declared = [
+        'numpy>=1 ; extra == "slam"',
+        "no-such-package>=3",
+        "pytest>=9999",
+        'not-wanted ; extra == "dev"',
+        'no-need ; extra == "cpu"',
+    ]
     monkeypatch.setattr(importlib.metadata, "requires", lambda _: declared)
     checks = {check.name: check for check in check_python_packages()}
     assert checks["Python no-such-package"].remedy == "pip install 'no-such-package>=3'"
     assert "expected >=9999" in checks["Python pytest"].found
     assert "Python not-wanted" not in checks
+    assert "Python no-need" not in checks
     assert "Python numpy" not in checks
 
 
@@ -105,3 +114,26 @@ def test_the_network_that_runs_is_named_with_its_reason(tmp_path: Path, monkeypa
     assert "`kinemap weights pull solov2_r50_fpn_ms-3x_coco` gets them" in missing.found
     config.segmenter.backend, config.segmenter.weights = "masks", None
     assert "not used: segmenter.backend is masks" in check_segmenter(config).found
+
+
+def test_in_what_the_network_runs_is_told_with_what_was_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    config = Config()
+    model = tmp_path / "mine.safetensors"
+    config.segmenter.weights = str(model)
+    assert check_segmenter_ways(config).found.startswith("no network to run")
+    model.write_bytes(b"weights")
+    assert check_segmenter_ways(config).found.startswith("not measured yet")
+    measured = {
+        "torch fp32": MeasuredWay(400.0, 1.0),
+        "torch bf16": MeasuredWay(300.0, 0.97),
+        "openvino fp32": MeasuredWay(200.0, 0.9999),
+    }
+    remember(f"{model_key(model)}R18 852x448", measured)
+    remember("0123456789ab R18 852x448", {"torch fp32": MeasuredWay(1.0, 1.0)})
+    assert check_segmenter_ways(config).found.startswith(
+        "openvino fp32, of torch fp32 400 ms, torch bf16 300 ms (left out: finds other masks, IoU 0.970), "
+        "openvino fp32 200 ms (R18 852x448)"
+    )

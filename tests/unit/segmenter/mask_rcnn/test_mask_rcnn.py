@@ -2,9 +2,10 @@
 import pytest
 import torch
 
-from services.segmenter.inference import Precision, TorchOptions, autocast
 from services.segmenter.mask_rcnn.network import DetectionOptions, MaskRcnn, pasted
 from services.segmenter.mask_rcnn.proposals import RegionProposals
+from services.segmenter.runtimes.torch_dense import TorchOptions, autocast
+from services.segmenter.runtimes.way import Precision
 
 CATEGORIES = 3
 

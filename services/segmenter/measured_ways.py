@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was measured of the ways to run a network, and which of them is taken; remembered in the cache."""
+
+import json
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from services.segmenter.weights.cache_folder import cache_folder
+from services.segmenter.weights.checksum import sha256_of
+
+SAME_IOU: Final = 0.98
+"""of every mask with the exact way's, where a way finds the same"""
+_WORTH: Final = 1.2
+"""times faster than the first way that another must be to be taken"""
+_FILE_NAME: Final = "fastest.json"
+
+
+@dataclass(frozen=True)
+class MeasuredWay:
+    """One way to run a network on this machine. Both None: it does not run here."""
+
+    took_ms: float | None
+    least_iou: float | None
+    """of the masks it found with those of the exact way; also None where there was nothing to judge by"""
+
+    @property
+    def fault(self) -> str:
+        """Why it may not be taken instead of the exact way; empty where it may."""
+        if self.took_ms is None:
+            return "does not run here"
+        if self.least_iou is None:
+            return "cannot be judged, the network finds nothing in the sample image"
+        return "" if self.least_iou >= SAME_IOU else f"finds other masks, IoU {self.least_iou:.3f}"
+
+
+def best_way(measured: Mapping[str, MeasuredWay], asked: Sequence[str]) -> str:
+    """The fastest that agrees; the first that is asked for where no other is worth it."""
+    took_ms = {name: ms for name in asked if not measured[name].fault and (ms := measured[name].took_ms) is not None}
+    if not took_ms:
+        return asked[0]
+    best = min(took_ms, key=took_ms.__getitem__)
+    first_ms = took_ms.get(asked[0])
+    return best if first_ms is None or first_ms > _WORTH * took_ms[best] else asked[0]
+
+
+def described(measured: Mapping[str, MeasuredWay]) -> str:
+    """In words, the one that is taken first."""
+    rows = []
+    for name, way in measured.items():
+        took = "" if way.took_ms is None else f" {way.took_ms:.0f} ms"
+        rows.append(f"{name}{took}{way.fault and f' (left out: {way.fault})'}")
+    return f"{best_way(measured, [*measured])}, of {', '.join(rows)}"
+
+
+def model_key(path: Path) -> str:
+    """What the keys of all that is measured of this model begin with. Raises InputError where it cannot be read."""
+    return f"{sha256_of(path)[:12]} "
+
+
+def remembered(key: str) -> dict[str, MeasuredWay]:
+    """What was measured under this key; nothing where it is not as it was written."""
+    return _parsed(_read().get(key))
+
+
+def remembered_of(model: str) -> dict[str, dict[str, MeasuredWay]]:
+    """All that was measured of a model, by the rest of the key."""
+    known = {key.removeprefix(model): _parsed(entry) for key, entry in _read().items() if key.startswith(model)}
+    return {key: ways for key, ways in known.items() if ways}
+
+
+def remember(key: str, measured: Mapping[str, MeasuredWay]) -> None:
+    """Keep it; where nothing can be kept, the next start measures again."""
+    path = cache_folder() / _FILE_NAME
+    rows = {name: {"ms": way.took_ms, "least_iou": way.least_iou} for name, way in measured.items()}
+    with suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{_FILE_NAME}.part")
+        part.write_text(json.dumps({**_read(), key: rows}, indent=1), encoding="utf-8")
+        part.replace(path)
+
+
+def _read() -> dict[str, object]:
+    try:
+        content = json.loads((cache_folder() / _FILE_NAME).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def _parsed(entry: object) -> dict[str, MeasuredWay]:
+    ways: dict[str, MeasuredWay] = {}
+    for name, row in entry.items() if isinstance(entry, dict) else ():
+        values = (row.get("ms", ""), row.get("least_iou", "")) if isinstance(row, dict) else ("", "")
+        if any(value is not None and type(value) is not float for value in values):
+            return {}
+        ways[name] = MeasuredWay(*values)
+    return ways
