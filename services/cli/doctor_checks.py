@@ -113,7 +113,7 @@ def check_segmenter(config: Config) -> Check:
 
 def check_segmenter_ways(config: Config) -> Check:
     """In what the network runs here, by what was measured when it first did."""
-    from services.segmenter.measured_ways import described, model_key, remembered_of
+    from services.segmenter.measured_ways import model_key, remembered_of
     from services.segmenter.runtimes.way import installed
     from services.segmenter.weights.choice import choose_model
 
@@ -122,6 +122,6 @@ def check_segmenter_ways(config: Config) -> Check:
         known = remembered_of(model_key(choose_model(config.segmenter.weights).path))
     except InputError as error:
         return Check(name, None, f"no network to run ({error})")
-    found = "; ".join(f"{described(ways)} ({key})" for key, ways in known.items())
+    found = "; ".join(f"{choice} ({key})" for key, choice in known.items())
     faster = "" if any(installed()) else ". On a CPU `pip install kinemap[cpu]` gives it faster libraries than torch"
     return Check(name, None, f"{found or 'not measured yet: its first run here does that'}{faster}")

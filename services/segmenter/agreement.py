@@ -14,22 +14,28 @@ from services.segmenter.solov2.instances import SegmentedInstances
 LEAST_KEPT: Final = 0.1
 """what both sides keep, so that an instance on the edge of being sure is there on both"""
 _SURE: Final = 0.3
+_LEAST_COUNT: Final = 3
+"""instances that are compared although they are not sure, where there are as many"""
 _SAMPLE: Final = Path(__file__).parent / "sample.jpg"
 
 
-def sample_image() -> npt.NDArray[np.uint8]:
-    """A picture of the simulator's with something in it, (H, W, 3) BGR. Raises ResourceError where it is missing."""
+def sample_images() -> list[npt.NDArray[np.uint8]]:
+    """A picture of the simulator's with something in it, and what it looks like mirrored, darker and nearer.
+
+    (H, W, 3) BGR, all of one size. Raises ResourceError where it is missing.
+    """
     image = cv2.imread(str(_SAMPLE))
     if image is None:
         raise ResourceError(f"{_SAMPLE}: no readable image, expected the one that comes with this package")
-    return np.asarray(image, np.uint8)
+    height, width = image.shape[:2]
+    nearer = cv2.resize(image[height // 4 :, : width * 3 // 4], (width, height))
+    return [np.asarray(view, np.uint8) for view in (image, image[:, ::-1], image // 2, nearer)]
 
 
 def overlaps(exact: SegmentedInstances, other: SegmentedInstances) -> list[float]:
     """The largest IoU with one of its category, of each instance that the exact side is sure of, or of its surest."""
-    if len(exact.scores) == 0:
-        return []
-    sure = exact.scores >= min(_SURE, float(exact.scores.max()))
+    sure = exact.scores >= _SURE
+    sure[:_LEAST_COUNT] = True
     if len(other.scores) == 0:
         return [0.0] * int(sure.sum())
     one, two = exact.masks[sure].flatten(1).float(), other.masks.flatten(1).float()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Backend `solov2` as it is configured: model, device, runtime, precision. It may be a Mask R-CNN, to compare."""
 
+import time
 from functools import partial
 
 from services.runtime.config.segmenter import SegmenterConfig
@@ -47,9 +48,10 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
         machine = torch.cuda.get_device_name(device) if device.type == "cuda" else processor_name()
         key = (
             f"{model_key(model.path)}{description.variant} {box[0]}x{box[1]}, {versions(judged.values())}, {machine}, "
-            f"{settings.threads} threads"
+            f"{settings.threads} threads, runtime {settings.runtime}, precision {settings.precision}"
         )
-        way = fastest(key, {name: partial(runs.inference, way, LEAST_KEPT) for name, way in judged.items()}, [*asked])
+        makers = {name: partial(runs.inference, way, LEAST_KEPT) for name, way in judged.items()}
+        way = fastest(key, makers, [*asked], time.perf_counter if device.type == "cuda" else time.process_time)
     _log.info(
         "network",
         file=model.path.name,

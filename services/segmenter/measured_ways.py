@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was measured of the ways to run a network, and which of them is taken; remembered in the cache."""
+"""What was measured of the ways to run a network, and which of them is taken; kept in the cache."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -36,9 +36,25 @@ class MeasuredWay:
         return "" if self.least_iou >= SAME_IOU else f"finds other masks, IoU {self.least_iou:.3f}"
 
 
+@dataclass(frozen=True)
+class ChosenWay:
+    """The way that is taken, and what was measured of it and others. What there was no time to measure is not there."""
+
+    name: str
+    measured: dict[str, MeasuredWay]
+
+    def __str__(self) -> str:
+        rows = []
+        for name, way in self.measured.items():
+            took = "" if way.took_ms is None else f" {way.took_ms:.0f} ms"
+            rows.append(f"{name}{took}{way.fault and f' (left out: {way.fault})'}")
+        return f"{self.name}, of {', '.join(rows)}"
+
+
 def best_way(measured: Mapping[str, MeasuredWay], asked: Sequence[str]) -> str:
     """The fastest that agrees; the first that is asked for where no other is worth it."""
-    took_ms = {name: ms for name in asked if not measured[name].fault and (ms := measured[name].took_ms) is not None}
+    usable = {name: measured[name] for name in asked if name in measured and not measured[name].fault}
+    took_ms = {name: way.took_ms for name, way in usable.items() if way.took_ms is not None}
     if not took_ms:
         return asked[0]
     best = min(took_ms, key=took_ms.__getitem__)
@@ -46,39 +62,31 @@ def best_way(measured: Mapping[str, MeasuredWay], asked: Sequence[str]) -> str:
     return best if first_ms is None or first_ms > _WORTH * took_ms[best] else asked[0]
 
 
-def described(measured: Mapping[str, MeasuredWay]) -> str:
-    """In words, the one that is taken first."""
-    rows = []
-    for name, way in measured.items():
-        took = "" if way.took_ms is None else f" {way.took_ms:.0f} ms"
-        rows.append(f"{name}{took}{way.fault and f' (left out: {way.fault})'}")
-    return f"{best_way(measured, [*measured])}, of {', '.join(rows)}"
-
-
 def model_key(path: Path) -> str:
     """What the keys of all that is measured of this model begin with. Raises InputError where it cannot be read."""
     return f"{sha256_of(path)[:12]} "
 
 
-def remembered(key: str) -> dict[str, MeasuredWay]:
-    """What was measured under this key; nothing where it is not as it was written."""
+def remembered(key: str) -> ChosenWay | None:
+    """What was chosen under this key; None where it is not as it was written."""
     return _parsed(_read().get(key))
 
 
-def remembered_of(model: str) -> dict[str, dict[str, MeasuredWay]]:
-    """All that was measured of a model, by the rest of the key."""
+def remembered_of(model: str) -> dict[str, ChosenWay]:
+    """All that was chosen for a model, by the rest of the key."""
     known = {key.removeprefix(model): _parsed(entry) for key, entry in _read().items() if key.startswith(model)}
-    return {key: ways for key, ways in known.items() if ways}
+    return {key: choice for key, choice in known.items() if choice is not None}
 
 
-def remember(key: str, measured: Mapping[str, MeasuredWay]) -> None:
+def remember(key: str, choice: ChosenWay) -> None:
     """Keep it; where nothing can be kept, the next start measures again."""
     path = cache_folder() / _FILE_NAME
-    rows = {name: {"ms": way.took_ms, "least_iou": way.least_iou} for name, way in measured.items()}
+    rows = {name: {"ms": way.took_ms, "least_iou": way.least_iou} for name, way in choice.measured.items()}
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f"{_FILE_NAME}.part")
-        part.write_text(json.dumps({**_read(), key: rows}, indent=1), encoding="utf-8")
+        content = {**_read(), key: {"way": choice.name, "measured": rows}}
+        part.write_text(json.dumps(content, indent=1), encoding="utf-8")
         part.replace(path)
 
 
@@ -90,11 +98,17 @@ def _read() -> dict[str, object]:
     return content if isinstance(content, dict) else {}
 
 
-def _parsed(entry: object) -> dict[str, MeasuredWay]:
-    ways: dict[str, MeasuredWay] = {}
-    for name, row in entry.items() if isinstance(entry, dict) else ():
-        values = (row.get("ms", ""), row.get("least_iou", "")) if isinstance(row, dict) else ("", "")
-        if any(value is not None and type(value) is not float for value in values):
-            return {}
-        ways[name] = MeasuredWay(*values)
-    return ways
+def _parsed(entry: object) -> ChosenWay | None:
+    match entry:
+        case {"way": str(name), "measured": {**rows}}:
+            ways = {str(way): _parsed_way(row) for way, row in rows.items()}
+            known = {way: measured for way, measured in ways.items() if measured is not None}
+            return ChosenWay(name, known) if len(known) == len(ways) else None
+    return None
+
+
+def _parsed_way(row: object) -> MeasuredWay | None:
+    match row:
+        case {"ms": float() | None as took_ms, "least_iou": float() | None as least_iou}:
+            return MeasuredWay(took_ms, least_iou)
+    return None

@@ -36,9 +36,10 @@ def precisions(device: str, runtime: Runtime = "torch") -> tuple[Precision, ...]
 
 
 def ways_here(device: str) -> tuple[Way, ...]:
-    """Every way of running SOLOv2 that this machine has the libraries for, exact torch first."""
+    """Every way of running SOLOv2 that this machine has the libraries for, exact torch first, 16 bits last."""
     runtimes: tuple[Runtime, ...] = ("torch", *(installed() if device == "cpu" else ()))
-    return tuple(Way(runtime, precision) for runtime in runtimes for precision in precisions(device, runtime))
+    ways = (Way(runtime, precision) for runtime in runtimes for precision in precisions(device, runtime))
+    return tuple(sorted(ways, key=lambda way: way.precision != "fp32"))
 
 
 def asked_ways(

@@ -20,7 +20,7 @@ from services.cli.doctor_checks import (
 )
 from services.cli.doctor_packages import check_debian_packages, check_python_packages
 from services.runtime.config import Config
-from services.segmenter.measured_ways import MeasuredWay, model_key, remember
+from services.segmenter.measured_ways import ChosenWay, MeasuredWay, model_key, remember
 from services.segmenter.weights import choice
 
 
@@ -131,8 +131,8 @@ def test_in_what_the_network_runs_is_told_with_what_was_left_out(
         "torch bf16": MeasuredWay(300.0, 0.97),
         "openvino fp32": MeasuredWay(200.0, 0.9999),
     }
-    remember(f"{model_key(model)}R18 852x448", measured)
-    remember("0123456789ab R18 852x448", {"torch fp32": MeasuredWay(1.0, 1.0)})
+    remember(f"{model_key(model)}R18 852x448", ChosenWay("openvino fp32", measured))
+    remember("0123456789ab R18 852x448", ChosenWay("torch fp32", {}))
     assert check_segmenter_ways(config).found.startswith(
         "openvino fp32, of torch fp32 400 ms, torch bf16 300 ms (left out: finds other masks, IoU 0.970), "
         "openvino fp32 200 ms (R18 852x448)"

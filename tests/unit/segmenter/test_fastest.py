@@ -11,7 +11,7 @@ import torch
 
 from services.segmenter import fastest as module
 from services.segmenter.fastest import fastest
-from services.segmenter.measured_ways import MeasuredWay, best_way, described, remembered_of
+from services.segmenter.measured_ways import ChosenWay, MeasuredWay, remembered_of
 from services.segmenter.solov2.instances import SegmentedInstances
 
 
@@ -61,69 +61,96 @@ def clock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> _Clock:
 
 def test_the_fastest_is_taken_and_remembered(clock: _Clock) -> None:
     ways = (_Takes(clock, 0.3), _Takes(clock, 0.2), _Takes(clock, 0.1))
-    assert fastest("one", _made(*ways), ["exact", "second", "third"]) == "third"
+    assert fastest("one", _made(*ways), ["exact", "second", "third"], clock.perf_counter) == "third"
     assert all(way.runs > 1 for way in ways)
     swapped = (_Takes(clock, 0.1), _Takes(clock, 0.3), _Takes(clock, 0.3))
-    assert fastest("one", _made(*swapped), ["exact", "second", "third"]) == "third"
+    assert fastest("one", _made(*swapped), ["exact", "second", "third"], clock.perf_counter) == "third"
     assert not any(way.runs for way in swapped)
-    assert fastest("another machine", _made(*swapped), ["exact", "second", "third"]) == "exact"
+    assert fastest("another machine", _made(*swapped), ["exact", "second", "third"], clock.perf_counter) == "exact"
 
 
 def test_the_exact_way_is_left_only_for_a_gain_that_is_worth_it(clock: _Clock) -> None:
-    assert fastest("one", _made(_Takes(clock, 0.11), _Takes(clock, 0.1)), ["exact", "second"]) == "exact"
+    assert (
+        fastest("one", _made(_Takes(clock, 0.11), _Takes(clock, 0.1)), ["exact", "second"], clock.perf_counter)
+        == "exact"
+    )
 
 
 def test_a_way_that_finds_other_masks_is_left_out(clock: _Clock, caplog: pytest.LogCaptureFixture) -> None:
     ways = _made(_Takes(clock, 0.3), _Takes(clock, 0.1, rows=97), _Takes(clock, 0.2, rows=99))
-    assert fastest("one", ways, [*ways]) == "third"
+    assert fastest("one", ways, [*ways], clock.perf_counter) == "third"
     assert _warned(caplog, "way_left_out") == {"way": "second", "why": "finds other masks, IoU 0.970"}
 
 
 def test_where_nothing_is_found_nothing_can_be_judged(clock: _Clock) -> None:
     ways = _made(_Takes(clock, 0.3, rows=0), _Takes(clock, 0.1, rows=0))
-    assert fastest("one", ways, [*ways]) == "exact"
+    assert fastest("one", ways, [*ways], clock.perf_counter) == "exact"
 
 
 def test_a_way_that_does_not_run_is_left_out_and_not_tried_again(
     clock: _Clock, caplog: pytest.LogCaptureFixture
 ) -> None:
     ways = {**_made(_Takes(clock, 0.3), _Takes(clock, 0.2)), "broken": _broken}
-    assert fastest("one", ways, [*ways]) == "second"
+    assert fastest("one", ways, [*ways], clock.perf_counter) == "second"
     error = "libtbb.so.12: cannot open shared object file"
     assert _warned(caplog, "way_does_not_run") == {"way": "broken", "error": error}
     caplog.clear()
-    assert fastest("one", ways, [*ways]) == "second"
+    assert fastest("one", ways, [*ways], clock.perf_counter) == "second"
     assert _warned(caplog, "way_does_not_run") is None
     assert _warned(caplog, "way_left_out") == {"way": "broken", "why": "does not run here"}
     with pytest.raises(OSError, match="libtbb"):
-        fastest("two", {"broken": _broken, **_made(_Takes(clock, 0.2))}, ["broken", "exact"])
+        fastest("two", {"broken": _broken, **_made(_Takes(clock, 0.2))}, ["broken", "exact"], clock.perf_counter)
 
 
 def test_of_ways_that_are_asked_for_the_first_is_fallen_back_on(clock: _Clock) -> None:
     ways = _made(_Takes(clock, 0.1), _Takes(clock, 0.3, rows=90), _Takes(clock, 0.2, rows=90))
-    assert fastest("one", ways, ["second", "third"]) == "second"
+    assert fastest("one", ways, ["second", "third"], clock.perf_counter) == "second"
 
 
-def test_what_is_not_as_it_was_written_is_measured_again(clock: _Clock, tmp_path: Path) -> None:
-    path = tmp_path / "kinemap" / "weights" / "fastest.json"
-    for content in (
+def test_no_way_is_begun_after_the_time_allowed(clock: _Clock, caplog: pytest.LogCaptureFixture) -> None:
+    ways = (_Takes(clock, 5.0), _Takes(clock, 3.0), _Takes(clock, 0.1))
+    assert fastest("one", _made(*ways), ["exact", "second", "third"], clock.perf_counter) == "second"
+    assert ways[2].runs == 0
+    assert _warned(caplog, "ways_not_measured") == {"ways": "third"}
+    assert fastest("one", _made(*ways), ["exact", "second", "third"], clock.perf_counter) == "second"
+    assert ways[2].runs == 0
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
         "{",
         "[]",
         '{"one": 3}',
-        '{"one": {"exact": "a", "second": 1.0}}',
-        '{"one": {"exact": {"ms": 1.0, "least_iou": 1.0}, "second": {"ms": "a", "least_iou": 1.0}}}',
-    ):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(content)
-        assert fastest("one", _made(_Takes(clock, 0.3), _Takes(clock, 0.1)), ["exact", "second"]) == "second"
-
-
-def test_what_was_measured_is_told_of_one_model(clock: _Clock) -> None:
-    fastest("abc R18", _made(_Takes(clock, 0.3), _Takes(clock, 0.1)), ["exact", "second"])
-    fastest("abd R18", _made(_Takes(clock, 0.3), _Takes(clock, 0.1, rows=50)), ["exact", "second"])
-    assert remembered_of("abc ") == {"R18": {"exact": MeasuredWay(300.0, 1.0), "second": MeasuredWay(100.0, 1.0)}}
-    assert remembered_of("x") == {}
-    assert described(remembered_of("abd ")["R18"]) == (
-        "exact, of exact 300 ms, second 100 ms (left out: finds other masks, IoU 0.500)"
+        '{"one": {"way": "exact"}}',
+        '{"one": {"way": 3, "measured": {}}}',
+        '{"one": {"way": "gone", "measured": {}}}',
+        '{"one": {"way": "exact", "measured": {"exact": 1.0}}}',
+        '{"one": {"way": "exact", "measured": {"exact": {"ms": "a", "least_iou": 1.0}}}}',
+    ],
+)
+def test_what_is_not_as_it_was_written_is_measured_again(clock: _Clock, tmp_path: Path, content: str) -> None:
+    path = tmp_path / "kinemap" / "weights" / "fastest.json"
+    path.parent.mkdir(parents=True)
+    path.write_text(content)
+    assert (
+        fastest("one", _made(_Takes(clock, 0.3), _Takes(clock, 0.1)), ["exact", "second"], clock.perf_counter)
+        == "second"
     )
-    assert best_way({"exact": MeasuredWay(None, None)}, ["exact"]) == "exact"
+
+
+def test_what_was_chosen_is_told_of_one_model(clock: _Clock) -> None:
+    fastest("abc R18", _made(_Takes(clock, 0.3), _Takes(clock, 0.1)), ["exact", "second"], clock.perf_counter)
+    fastest(
+        "abd R18",
+        {**_made(_Takes(clock, 0.3), _Takes(clock, 0.1, rows=50)), "x": _broken},
+        ["exact", "second"],
+        clock.perf_counter,
+    )
+    measured = {"exact": MeasuredWay(300.0, 1.0), "second": MeasuredWay(100.0, 1.0)}
+    assert remembered_of("abc ") == {"R18": ChosenWay("second", measured)}
+    assert remembered_of("x") == {}
+    assert str(remembered_of("abd ")["R18"]) == (
+        "exact, of exact 300 ms, second 100 ms (left out: finds other masks, IoU 0.500), "
+        "x (left out: does not run here)"
+    )

@@ -107,14 +107,20 @@ def test_categories_that_it_does_not_know_are_named(tmp_path: Path, caplog: pyte
     chosen = InstanceFilter(frozenset({"dog"}))
     with pytest.raises(InputError, match=r"mine\.safetensors knows none of dog, only person, car, chair"):
         configured_network(SegmenterConfig(weights=weights, categories=("dog",)), chosen)
-    configured_network(SegmenterConfig(weights=weights, categories=("dog", "car")), chosen)
+    settings = SegmenterConfig(weights=weights, categories=("dog", "car"), runtime="torch", precision="fp32")
+    configured_network(settings, chosen)
     assert "categories_unknown" in caplog.text
 
 
 def test_the_service_segments_every_nth_frame_and_says_of_the_others_that_it_skipped_them(tmp_path: Path) -> None:
     config = Config()
     config.segmenter = SegmenterConfig(
-        backend="solov2", weights=str(_save(tmp_path / "mine.safetensors")), every=3, min_score=0, precision="fp32"
+        backend="solov2",
+        weights=str(_save(tmp_path / "mine.safetensors")),
+        every=3,
+        min_score=0,
+        runtime="torch",
+        precision="fp32",
     )
     service = SegmenterService(config)
     pixels = np.random.default_rng(0).integers(0, 255, (64, 96, 3), np.uint8)
@@ -134,7 +140,9 @@ def test_sixteen_bits_see_the_same(tmp_path: Path) -> None:
     weights = str(_save(tmp_path / "mine.safetensors"))
     found = []
     for precision in ("fp32", "bf16"):
-        settings = SegmenterConfig.model_validate({"weights": weights, "precision": precision, "min_score": 0})
+        settings = SegmenterConfig.model_validate(
+            {"weights": weights, "runtime": "torch", "precision": precision, "min_score": 0}
+        )
         backend = configured_network(settings, InstanceFilter(frozenset(CATEGORIES)))
         found.append(backend.segment(Image(5, pixels), FrameContext("name")))
     assert found[0].instances

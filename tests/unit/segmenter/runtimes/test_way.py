@@ -5,7 +5,9 @@ from services.runtime.errors import InputError, ResourceError
 from services.segmenter.runtimes import way as module
 from services.segmenter.runtimes.way import Way, asked_ways, precisions, versions, ways_here
 
-HERE = (Way("torch", "fp32"), Way("torch", "bf16"), Way("openvino", "fp32"), Way("openvino", "bf16"))
+TORCH, TORCH_16 = Way("torch", "fp32"), Way("torch", "bf16")
+OPENVINO, OPENVINO_16 = Way("openvino", "fp32"), Way("openvino", "bf16")
+HERE = (TORCH, OPENVINO, TORCH_16, OPENVINO_16)
 
 
 @pytest.fixture(autouse=True)
@@ -19,11 +21,11 @@ def _only(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 def test_libraries_count_only_where_the_network_can_get_into_them(monkeypatch: pytest.MonkeyPatch) -> None:
     _only(monkeypatch, "openvino", "onnxruntime")
-    assert ways_here("cpu") == HERE[:2]
+    assert ways_here("cpu") == (TORCH, TORCH_16)
     _only(monkeypatch, "openvino", "onnx")
     assert ways_here("cpu") == HERE
     _only(monkeypatch, "onnxruntime", "onnx")
-    assert ways_here("cpu") == (*HERE[:2], Way("onnxruntime", "fp32"))
+    assert ways_here("cpu") == (TORCH, Way("onnxruntime", "fp32"), TORCH_16)
     assert ways_here("cuda") == (Way("torch", "fp32"), Way("torch", "fp16"))
 
 
@@ -34,9 +36,9 @@ def test_16_bits_only_where_the_processor_multiplies_them(monkeypatch: pytest.Mo
 
 def test_what_is_asked_for() -> None:
     assert asked_ways(HERE, "auto", "auto", "cpu") == HERE
-    assert asked_ways(HERE, "auto", "bf16", "cpu") == (HERE[1], HERE[3])
-    assert asked_ways(HERE, "openvino", "auto", "cpu") == HERE[2:]
-    assert asked_ways(HERE, "openvino", "bf16", "cpu") == HERE[3:]
+    assert asked_ways(HERE, "auto", "bf16", "cpu") == (TORCH_16, OPENVINO_16)
+    assert asked_ways(HERE, "openvino", "auto", "cpu") == (OPENVINO, OPENVINO_16)
+    assert asked_ways(HERE, "openvino", "bf16", "cpu") == (OPENVINO_16,)
     assert asked_ways(HERE, "torch", "fp16", "cpu") == (Way("torch", "fp16"),)
 
 
@@ -50,5 +52,5 @@ def test_what_cannot_be_had_is_named() -> None:
 
 
 def test_versions_are_those_of_the_libraries_in_use() -> None:
-    assert versions(HERE[:2]).startswith("torch 2.")
-    assert str(HERE[3]) == "openvino bf16"
+    assert versions([TORCH]).startswith("torch 2.")
+    assert str(OPENVINO_16) == "openvino bf16"
