@@ -13,7 +13,7 @@ from services.segmenter.weights.checksum import sha256_of
 
 SAME_IOU: Final = 0.98
 """of every mask with the exact way's, where a way finds the same"""
-_WORTH: Final = 1.2
+_WORTH: Final = 1.1
 """times faster than the first way that another must be to be taken"""
 _FILE_NAME: Final = "fastest.json"
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Milliseconds an image takes in each way to run a network, and whether all find the same.
 
-    python -m tests.benchmark.segmenter.runtimes IMAGES [--weights FILE] [--count 8] [--write]
+    OMP_WAIT_POLICY=passive python -m tests.benchmark.segmenter.runtimes IMAGES [--weights FILE] [--count 8] [--write]
 
+Threads of torch that wait for each other keep the processor busy unless they are told to sleep, as the services' are.
 IMAGES is a folder of images. Without weights, those of three networks are drawn by chance and all images fitted into
 852x448: the convolutions take as long as with real ones, but nothing is found, and no masks are made.
 Least times of all images: processor time, and time by the clock, which says something on an idle machine only.
@@ -41,6 +42,7 @@ HEADER = (
     "median IoU (least)",
 )
 _DRAWN = ("solov2-light_r18", "solov2-compact_r18", "mask-rcnn_r50")
+_COMMAND = "OMP_WAIT_POLICY=passive python -m tests.benchmark.segmenter.runtimes"
 _DRAWN_BOX = (852, 448)
 
 Images = list[npt.NDArray[np.uint8]]
@@ -119,10 +121,12 @@ def main() -> None:
         network, description = load_network(arguments.weights)
         rows += measured(description.variant, network, description.input_box, images, compared=True)
     table = markdown_table(HEADER, rows)
-    if arguments.write:
-        put("segmenter-runtimes", "python -m tests.benchmark.segmenter.runtimes IMAGES --write", table)
-    else:
+    if not arguments.write:
         print(table)
+    elif arguments.weights is None:
+        put("segmenter-runtimes", f"{_COMMAND} IMAGES --write", table)
+    else:
+        put("segmenter-runtimes-masks", f"{_COMMAND} IMAGES --weights FILE --write", table)
 
 
 if __name__ == "__main__":

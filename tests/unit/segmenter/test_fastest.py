@@ -71,7 +71,7 @@ def test_the_fastest_is_taken_and_remembered(clock: _Clock) -> None:
 
 def test_the_exact_way_is_left_only_for_a_gain_that_is_worth_it(clock: _Clock) -> None:
     assert (
-        fastest("one", _made(_Takes(clock, 0.11), _Takes(clock, 0.1)), ["exact", "second"], clock.perf_counter)
+        fastest("one", _made(_Takes(clock, 0.105), _Takes(clock, 0.1)), ["exact", "second"], clock.perf_counter)
         == "exact"
     )
 
