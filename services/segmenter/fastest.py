@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from services.runtime.log import get_logger
 from services.segmenter.agreement import overlaps, sample_images
-from services.segmenter.measured_ways import ChosenWay, MeasuredWay, best_way, remember, remembered
+from services.segmenter.measured_ways import ChosenWay, MeasuredWay, best_way, choices_path, remember, remembered
 from services.segmenter.solov2.instances import SegmentedInstances
 
 _ALLOWED_S: Final = 30.0
@@ -54,7 +54,8 @@ def _measured(ways: Mapping[str, Callable[[], _Inference]], clock: Callable[[], 
     begun = time.perf_counter()
     for name, make in ways.items():
         if time.perf_counter() - begun > _ALLOWED_S:
-            _log.warning("ways_not_measured", ways=", ".join(other for other in ways if other not in measured))
+            left = ", ".join(other for other in ways if other not in measured)
+            _log.warning("ways_not_measured", ways=left, measured_again_without=str(choices_path()))
             break
         try:
             found, took_ms = _run(make(), images, clock)

@@ -62,6 +62,11 @@ def best_way(measured: Mapping[str, MeasuredWay], asked: Sequence[str]) -> str:
     return best if first_ms is None or first_ms > _WORTH * took_ms[best] else asked[0]
 
 
+def choices_path() -> Path:
+    """Where the choices are kept; who removes the file has everything measured again."""
+    return cache_folder() / _FILE_NAME
+
+
 def model_key(path: Path) -> str:
     """What the keys of all that is measured of this model begin with. Raises InputError where it cannot be read."""
     return f"{sha256_of(path)[:12]} "
@@ -80,7 +85,7 @@ def remembered_of(model: str) -> dict[str, ChosenWay]:
 
 def remember(key: str, choice: ChosenWay) -> None:
     """Keep it; where nothing can be kept, the next start measures again."""
-    path = cache_folder() / _FILE_NAME
+    path = choices_path()
     rows = {name: {"ms": way.took_ms, "least_iou": way.least_iou} for name, way in choice.measured.items()}
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -92,7 +97,7 @@ def remember(key: str, choice: ChosenWay) -> None:
 
 def _read() -> dict[str, object]:
     try:
-        content = json.loads((cache_folder() / _FILE_NAME).read_text(encoding="utf-8"))
+        content = json.loads(choices_path().read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
     return content if isinstance(content, dict) else {}

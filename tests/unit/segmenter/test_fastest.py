@@ -107,13 +107,19 @@ def test_of_ways_that_are_asked_for_the_first_is_fallen_back_on(clock: _Clock) -
     assert fastest("one", ways, ["second", "third"], clock.perf_counter) == "second"
 
 
-def test_no_way_is_begun_after_the_time_allowed(clock: _Clock, caplog: pytest.LogCaptureFixture) -> None:
+def test_no_way_is_begun_after_the_time_allowed(
+    clock: _Clock, caplog: pytest.LogCaptureFixture, tmp_path: Path
+) -> None:
     ways = (_Takes(clock, 5.0), _Takes(clock, 3.0), _Takes(clock, 0.1))
     assert fastest("one", _made(*ways), ["exact", "second", "third"], clock.perf_counter) == "second"
     assert ways[2].runs == 0
-    assert _warned(caplog, "ways_not_measured") == {"ways": "third"}
+    path = tmp_path / "kinemap" / "weights" / "fastest.json"
+    assert _warned(caplog, "ways_not_measured") == {"ways": "third", "measured_again_without": str(path)}
     assert fastest("one", _made(*ways), ["exact", "second", "third"], clock.perf_counter) == "second"
     assert ways[2].runs == 0
+    path.unlink()
+    quicker = (_Takes(clock, 0.4), _Takes(clock, 0.3), _Takes(clock, 0.1))
+    assert fastest("one", _made(*quicker), ["exact", "second", "third"], clock.perf_counter) == "third"
 
 
 @pytest.mark.parametrize(
