@@ -84,6 +84,8 @@ class PassReport:
     """whether the engine held its lengths for metres at the last frame"""
     loops_closed: int = 0
     """frames at which a loop's correction was merged; one that only the end of the pass merges is not among them"""
+    maps_joined: int = 0
+    """frames at which another map was joined with the current one"""
 
     def ms(self, percent: float) -> float:
         """Percentile of the wall-clock time of a frame."""
@@ -119,6 +121,7 @@ def report(run: EngineRun, parts: Sequence[SequencePart], name: str = "") -> Pas
         scale=scale,
         metric=run.results[-1].metric_scale,
         loops_closed=sum(result.loop_closed for result in run.results),
+        maps_joined=sum(result.maps_merged for result in run.results),
         maps=len(set(run.map_of_keyframe.values())),
         keyframes=len(run.keyframes),
         culled=len(run.culled),

@@ -2,9 +2,10 @@
 """Whether the engine slows down or fills the memory: ten thousand frames, round after round through the same town.
 
 `python -m tests.benchmark.slam.ten_thousand_frames --drives FOLDER [--seeds 1] [--frames 10000]` puts its tables into
-docs/measurements.md. One simulated round is shown again and again. Processor time is that of all threads of the
-engine, the background's too. Where other programs run on the machine it is slower at one time than at another: what
-counts then is how often the engine's time for a round would have read that round's images, the same work each time.
+docs/measurements.md. One simulated round is shown again and again, until the last thousand frames show the places of
+the second. Processor time is that of all threads of the engine, the background's too. Where other programs run on the
+machine it is slower at one time than at another: what counts then is how often the engine's time for a round would
+have read that round's images, the same work each time.
 """
 
 from collections.abc import Iterator
@@ -49,6 +50,11 @@ def round_of(part: SequencePart) -> int:
     return int(np.linalg.norm(centers[_NOT_YET_BACK:] - centers[0], axis=1).argmin()) + _NOT_YET_BACK
 
 
+def thousand_of(frames: int) -> int:
+    """Frames in a thousand; less for short trials."""
+    return min(1000, frames // 4)
+
+
 def growth(ms: npt.NDArray[np.float64], thousand: int) -> str:
     """Mean of the second thousand frames, of the last, and how much more that is."""
     second, last = ms[thousand : 2 * thousand].mean(), ms[-thousand:].mean()
@@ -80,7 +86,7 @@ def round_rows(seed: int, report: PassReport) -> Iterator[list[str]]:
 
 def row(seed: int, report: PassReport) -> list[str]:
     """A seed's line of the table."""
-    thousand = min(1000, report.frames // 4)
+    thousand = thousand_of(report.frames)
     kilometres = np.linalg.norm(np.diff(report.true_centers, axis=0), axis=1).cumsum() / 1000
     grown_mb = report.rss_mb[-1] - report.rss_mb[thousand]
     return [
@@ -108,8 +114,11 @@ def main() -> None:
     for seed in given.seeds:
         folder = simulated_drive("static", seed, given.drives)
         frames = round_of(SequencePart(folder))
-        rounds = [SequencePart(folder, 0, frames)] * (given.frames // frames)
-        rounds.append(SequencePart(folder, 0, given.frames % frames))
+        thousand = thousand_of(given.frames)
+        # Made up to where the last thousand frames show the same places as the second thousand.
+        total = given.frames + (2 * thousand - given.frames) % frames
+        rounds = [SequencePart(folder, 0, frames)] * (total // frames)
+        rounds.append(SequencePart(folder, 0, total % frames))
         groups[str(seed)] = [
             EnginePass(tuple(part for part in rounds if part.frames), given.stage, name=f"seed {seed}")
         ]

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/frame_matcher.h"
 
-#include <set>
-
 #include "features/brute_force_matcher.h"
 #include "features/rotation_consistency.h"
+#include "map/id_set.h"
 #include "map/landmark_search.h"
 
 namespace kinemap {
@@ -57,13 +56,16 @@ int MatchKeyframe(const SlamMap& map, KeyframeId keyframe_id, double ratio, Fram
 
 int ProjectKeyframe(const SlamMap& map, const CameraModel& camera, KeyframeId keyframe_id, double radius_px,
                     int max_distance, Frame* frame) {
-  const std::set<LandmarkId> already(frame->landmark_ids.begin(), frame->landmark_ids.end());
+  IdSet already;
+  for (const LandmarkId id : frame->landmark_ids) {
+    if (id != kNoId) already.Insert(id);
+  }
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
   int added = 0;
   for (const LandmarkId id : map.keyframe(keyframe_id).landmark_ids) {
     const Landmark* landmark = map.FindLandmark(id);
-    if (landmark == nullptr || !landmark->IsTrackable() || already.count(landmark->id) > 0) continue;
+    if (landmark == nullptr || !landmark->IsTrackable() || already.Contains(landmark->id)) continue;
     const auto view =
         PredictView(*landmark, map.PositionInMap(*landmark), frame->camera_from_map, center, camera, map.scales());
     if (!view) continue;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/landmark_projection.h"
 
-#include <set>
-
+#include "map/id_set.h"
 #include "map/landmark_search.h"
 
 namespace kinemap {
@@ -14,12 +13,15 @@ constexpr double kRatio = 0.9;
 
 int ProjectLandmarks(const SlamMap& map, const CameraModel& camera, const std::vector<LandmarkId>& landmarks,
                      double radius_px, int max_distance, Frame* frame) {
-  const std::set<LandmarkId> already(frame->landmark_ids.begin(), frame->landmark_ids.end());
+  IdSet already;
+  for (const LandmarkId id : frame->landmark_ids) {
+    if (id != kNoId) already.Insert(id);
+  }
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
   int added = 0;
   for (const LandmarkId id : landmarks) {
-    if (already.count(id) > 0) continue;
+    if (already.Contains(id)) continue;
     const Landmark* landmark = map.FindLandmark(id);
     const auto view =
         PredictView(*landmark, map.PositionInMap(*landmark), frame->camera_from_map, center, camera, map.scales());

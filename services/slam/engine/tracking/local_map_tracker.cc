@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <set>
 
 #include "map/landmark_search.h"
 #include "tracking/chance_test.h"
@@ -37,27 +35,31 @@ bool IsHidden(const Eigen::Vector3d& point_in_camera, const CameraModel& camera,
 }  // namespace
 
 std::vector<KeyframeId> LocalMapTracker::LocalKeyframes(const SlamMap& map, const Frame& frame) const {
-  std::map<KeyframeId, int> votes;
+  std::vector<KeyframeId> votes;
   for (const LandmarkId id : frame.landmark_ids) {
     const Landmark* landmark = map.FindLandmark(id);
     if (landmark == nullptr) continue;
-    for (const auto& [keyframe_id, keypoint] : landmark->observations) ++votes[keyframe_id];
+    for (const auto& [keyframe_id, keypoint] : landmark->observations) votes.push_back(keyframe_id);
   }
+  std::sort(votes.begin(), votes.end());
   std::vector<std::pair<int, KeyframeId>> ranked;
-  for (const auto& [keyframe_id, count] : votes) ranked.emplace_back(-count, keyframe_id);
+  for (const KeyframeId keyframe_id : votes) {
+    if (ranked.empty() || ranked.back().second != keyframe_id) ranked.emplace_back(0, keyframe_id);
+    --ranked.back().first;
+  }
   std::sort(ranked.begin(), ranked.end());
   std::vector<KeyframeId> local;
-  std::set<KeyframeId> included;
+  IdSet included;
   for (const auto& [negative_count, keyframe_id] : ranked) {
     if (local.size() == kMostKeyframes) break;
     local.push_back(keyframe_id);
-    included.insert(keyframe_id);
+    included.Insert(keyframe_id);
   }
   const size_t observers = local.size();
   for (size_t i = 0; i < observers && local.size() < kMostKeyframes; ++i) {
     // One new neighbour of each observer widens the map a little beyond what the frame already matches.
     for (const KeyframeId neighbor : map.covisibility().Neighbors(local[i], kNeighborsOfEach)) {
-      if (!included.insert(neighbor).second) continue;
+      if (!included.Insert(neighbor)) continue;
       local.push_back(neighbor);
       break;
     }
@@ -67,31 +69,31 @@ std::vector<KeyframeId> LocalMapTracker::LocalKeyframes(const SlamMap& map, cons
 
 void LocalMapTracker::SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
                                            Searched* searched, Frame* frame) const {
-  std::set<LandmarkId> seen;
+  IdSet seen;
   for (LandmarkId& id : frame->landmark_ids) {
     Landmark* landmark = map->FindLandmark(id);
     id = landmark == nullptr ? kNoId : landmark->id;
-    if (landmark == nullptr || !seen.insert(id).second) continue;
-    searched->in_view.insert(id);
-    searched->looked_for.insert(id);
+    if (landmark == nullptr || !seen.Insert(id)) continue;
+    searched->in_view.Insert(id);
+    searched->looked_for.Insert(id);
   }
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
   for (const KeyframeId keyframe_id : keyframes) {
     for (const LandmarkId id : map->keyframe(keyframe_id).landmark_ids) {
       Landmark* landmark = map->FindLandmark(id);
-      if (landmark == nullptr || !landmark->IsTrackable() || !seen.insert(landmark->id).second) continue;
+      if (landmark == nullptr || !landmark->IsTrackable() || !seen.Insert(landmark->id)) continue;
       const auto view =
           PredictView(*landmark, map->PositionInMap(*landmark), frame->camera_from_map, center, camera_, map->scales());
       if (!view) continue;
-      searched->in_view.insert(landmark->id);
+      searched->in_view.Insert(landmark->id);
       const double radius = (view->view_cosine > kStraightCosine ? kStraightRadiusPx : kOtherRadiusPx) * radius_factor *
                             camera_.SpreadAt(view->pixel_px);
       const SearchWindow window{view->pixel_px, radius * map->scales().scale(view->octave), view->octave - 1,
                                 view->octave + 1};
       const int best = search.FindBest(*frame->features, landmark->descriptor, window, kMaxHammingDistance, kMatchRatio,
                                        [&](int j) { return frame->IsFree(j); });
-      if (search.IsAnyNear()) searched->looked_for.insert(landmark->id);
+      if (search.IsAnyNear()) searched->looked_for.Insert(landmark->id);
       if (best >= 0) frame->landmark_ids[best] = landmark->id;
     }
   }
@@ -132,14 +134,12 @@ PoseEstimate LocalMapTracker::Track(SlamMap* map, double radius_factor, Frame* f
     if (landmark == nullptr) continue;
     ++landmark->found;
     ++landmark->visible;
-    searched.in_view.erase(landmark->id);
+    searched.in_view.Erase(landmark->id);
   }
-  for (const LandmarkId id : searched.in_view) {
+  searched.in_view.ForEach([&](LandmarkId id) {
     Landmark* landmark = map->FindLandmark(id);
-    if (!IsHidden(frame->camera_from_map * map->PositionInMap(*landmark), camera_, *frame)) {
-      ++landmark->visible;
-    }
-  }
+    if (!IsHidden(frame->camera_from_map * map->PositionInMap(*landmark), camera_, *frame)) ++landmark->visible;
+  });
   return estimate;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <set>
 #include <vector>
 
 #include "geometry/camera_model.h"
 #include "map/frame.h"
+#include "map/id_set.h"
 #include "map/slam_map.h"
 #include "tracking/frame_pose_solver.h"
 
@@ -27,8 +27,8 @@ class LocalMapTracker {
   std::vector<KeyframeId> LocalKeyframes(const SlamMap& map, const Frame& frame) const;
   /// Landmarks of the local map by what became of them; each set holds the next.
   struct Searched {
-    std::set<LandmarkId> in_view;
-    std::set<LandmarkId> looked_for;  ///< something that may be them lies where they should be
+    IdSet in_view;
+    IdSet looked_for;  ///< something that may be them lies where they should be
   };
   void SearchLocalLandmarks(SlamMap* map, const std::vector<KeyframeId>& keyframes, double radius_factor,
                             Searched* searched, Frame* frame) const;
