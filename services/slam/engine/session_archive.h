@@ -114,9 +114,11 @@ class SessionArchive {
       : archive_(*archive), camera_(camera), pyramid_levels_(pyramid_levels) {}
 
   void operator()(Frame& frame) {
-    auto& [timestamp_ns, features, labels, landmark_ids, camera_from_map, reference_keyframe_id] = frame;
+    auto& [timestamp_ns, tracked_since_ns, features, labels, landmark_ids, camera_from_map, reference_keyframe_id] =
+        frame;
     bool has_features = features != nullptr;
-    archive_(timestamp_ns, labels, landmark_ids, camera_from_map, reference_keyframe_id, has_features);
+    archive_(timestamp_ns, tracked_since_ns, labels, landmark_ids, camera_from_map, reference_keyframe_id,
+             has_features);
     if constexpr (Archive::kReads) {
       if (has_features) features = ReadFeatures(camera_, pyramid_levels_, &archive_);
       const size_t count = has_features ? features->keypoints.size() : 0;

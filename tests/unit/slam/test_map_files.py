@@ -89,7 +89,7 @@ def test_a_camera_elsewhere_gets_a_second_map_after_a_while(room: TexturedRoom, 
         (lambda data: b"", "is empty"),
         (lambda data: data[: len(data) // 2], "is cut off"),
         (lambda data: data[:1000] + bytes([data[1000] ^ 1]) + data[1001:], "is damaged: its checksum does not fit"),
-        (lambda data: data[:8] + b"\x07" + data[9:], "is of version 7, expected 1"),
+        (lambda data: data[:8] + b"\x07" + data[9:], "is of version 7, expected 2"),
         (lambda data: b"PNG" + data, "is not a kinemap map file"),
     ],
 )

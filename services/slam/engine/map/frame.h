@@ -13,6 +13,7 @@ namespace kinemap {
 /// One image on its way through the tracker.
 struct Frame {
   int64_t timestamp_ns = 0;
+  int64_t tracked_since_ns = 0;  ///< time of the first frame since which the camera was never lost
   FrameFeaturesPtr features;
   std::vector<FeatureLabel> labels;      ///< one a keypoint
   std::vector<LandmarkId> landmark_ids;  ///< one a keypoint, kNoId where it matches none

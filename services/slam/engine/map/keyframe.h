@@ -15,6 +15,7 @@ namespace kinemap {
 struct Keyframe {
   KeyframeId id = kNoId;
   int64_t timestamp_ns = 0;
+  int64_t tracked_since_ns = 0;             ///< time of the first frame since which the camera was never lost
   FrameFeaturesPtr features;                ///< null once culled
   std::vector<FeatureLabel> labels;         ///< one a keypoint
   std::vector<LandmarkId> landmark_ids;     ///< one a keypoint, kNoId where it observes none

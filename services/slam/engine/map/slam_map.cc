@@ -13,6 +13,7 @@ Keyframe& SlamMap::InsertKeyframe(const Frame& frame) {
   auto keyframe = std::make_unique<Keyframe>();
   keyframe->id = last_keyframe_id_ = keyframes_.NextId(id_block_);
   keyframe->timestamp_ns = frame.timestamp_ns;
+  keyframe->tracked_since_ns = frame.tracked_since_ns;
   keyframe->features = frame.features;
   keyframe->labels = frame.labels;
   keyframe->landmark_ids.assign(frame.size(), kNoId);

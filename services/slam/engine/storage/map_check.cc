@@ -13,6 +13,9 @@ void Require(bool holds, const char* what, int64_t id) {
   if (!holds) throw MapFileError("damaged: " + std::string(what) + " (" + std::to_string(id) + ")");
 }
 
+// Differences of what lies nearer fit into their type.
+constexpr int64_t kEndOfTimeNs = int64_t{1} << 62;
+
 bool IsPose(const RigidTransform& pose) {
   return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 1e-6;
 }
@@ -25,6 +28,8 @@ bool IsState(MotionState state) { return state <= MotionState::kPotentiallyDynam
 
 void MapCodec::CheckKeyframe(const SlamMap& map, const Keyframe& keyframe) {
   Require(IsPose(keyframe.map_from_keyframe) && IsScale(keyframe.scale), "pose of a keyframe", keyframe.id);
+  Require(std::abs(keyframe.timestamp_ns) < kEndOfTimeNs && std::abs(keyframe.tracked_since_ns) < kEndOfTimeNs,
+          "time of a keyframe", keyframe.id);
   for (const KeyframeId other : keyframe.loop_edges) {
     Require(map.FindKeyframe(other) != nullptr, "a loop to a keyframe that is not there", keyframe.id);
   }

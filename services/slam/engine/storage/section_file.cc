@@ -20,7 +20,7 @@ namespace kinemap {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'I', 'N', 'E', 'M', 'A', 'P', '\n'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr size_t kHeaderBytes = kMagic.size() + 4 + 4 + 8;
 
 class OpenFile {

@@ -77,11 +77,11 @@ void SerializeSparse(Archive& archive, std::vector<T>& values, const T& usual, s
 /// Features are in a section of their own; `feature_count` is 0 for a culled keyframe.
 template <typename Archive>
 void Serialize(Archive& archive, Keyframe& keyframe) {
-  auto& [id, timestamp_ns, features, labels, landmark_ids, map_from_keyframe, scale, loop_edges, anchored,
-         culled_children, culled, parent_id, parent_from_keyframe] = keyframe;
+  auto& [id, timestamp_ns, tracked_since_ns, features, labels, landmark_ids, map_from_keyframe, scale, loop_edges,
+         anchored, culled_children, culled, parent_id, parent_from_keyframe] = keyframe;
   auto feature_count = static_cast<uint32_t>(labels.size());
-  archive(id, timestamp_ns, map_from_keyframe, scale, loop_edges, anchored, culled_children, culled, parent_id,
-          parent_from_keyframe, feature_count);
+  archive(id, timestamp_ns, tracked_since_ns, map_from_keyframe, scale, loop_edges, anchored, culled_children, culled,
+          parent_id, parent_from_keyframe, feature_count);
   if (feature_count > kMostFeatures)
     throw MapFileError("damaged: a keyframe of " + std::to_string(feature_count) + " features");
   SerializeSparse(archive, labels, FeatureLabel{}, feature_count);

@@ -106,6 +106,7 @@ TrackedPose CameraTracker::Recover(SlamMap* map, int lost_frames, Frame* frame) 
   result.tracked = result.estimate.inliers >= options_.min_relocalized_inliers;
   result.local_map_ms = MillisecondsSince(start) - result.match_ms;
   if (!result.tracked) return result;
+  frame->tracked_since_ns = frame->timestamp_ns;
   Start(*map, *frame, std::nullopt);
   frames_since_relocalization_ = 0;
   return result;
@@ -165,19 +166,29 @@ TrackedPose CameraTracker::Track(SlamMap* map, Frame* frame) {
     if (lost_frames_ == 0 && TrackLastFrame(*map, *expected, frame)) FollowLocalMap(map, &*expected, frame, &result);
     if (!result.tracked && TrackByPrediction(*map, *expected, frame)) FollowLocalMap(map, &*expected, frame, &result);
   }
-  if (!result.tracked) {
-    expected.reset();
-    if (lost_recently && TrackReferenceKeyframe(*map, frame)) FollowLocalMap(map, nullptr, frame, &result);
-  }
-  if (!result.tracked) {
+  if (!result.tracked) expected.reset();
+  const auto from_reference = [&] {
+    if (result.tracked || !lost_recently || !TrackReferenceKeyframe(*map, frame)) return;
+    result.relocalized = false;
+    FollowLocalMap(map, nullptr, frame, &result);
+  };
+  const auto by_places = [&] {
+    if (result.tracked) return;
     const Eigen::Vector3d last_center = last_.camera_from_map.Inverse().translation;
     result.relocalized = relocalizer_.Relocalize(*map, last_center, lost_frames_, frame);
     if (result.relocalized) FollowLocalMap(map, nullptr, frame, &result);
-  }
+  };
+  // A camera that was lost may have been carried some way: three points know where it is now, while steps from where it
+  // was may end beside it.
+  if (lost_frames_ == 0) from_reference();
+  by_places();
+  if (lost_frames_ > 0) from_reference();
   if (!result.tracked && result.reason.empty()) result.reason = "lost: no keyframe recognised";
   result.match_ms = MillisecondsSince(start) - result.local_map_ms;
   if (result.tracked) {
     if (result.relocalized) frames_since_relocalization_ = 0;
+    const bool followed = !result.relocalized && (lost_frames_ == 0 || expected);
+    frame->tracked_since_ns = followed ? last_.tracked_since_ns : frame->timestamp_ns;
     LearnMotion(*map, expected, *frame, result);
     lost_frames_ = 0;
     Remember(*map, *frame);

@@ -16,6 +16,7 @@ void InitialMapBuilder::AddKeyframes(const RigidTransform& map_from_first_camera
   Frame reference = initial.reference;
   reference.ForgetMatches();
   reference.camera_from_map = map_from_first_camera.Inverse();
+  reference.tracked_since_ns = built->current.tracked_since_ns = reference.timestamp_ns;
   built->current.ForgetMatches();
   built->current.camera_from_map = initial.motion.second_from_first * reference.camera_from_map;
   const KeyframeId first = map.InsertKeyframe(reference).id;

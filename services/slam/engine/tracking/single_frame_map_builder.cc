@@ -21,6 +21,7 @@ std::unique_ptr<SlamMap> SingleFrameMapBuilder::Build(int64_t map_id, const Rigi
   auto map = std::make_unique<SlamMap>(map_id, scales_);
   map->set_metric_scale(true);
   frame->ForgetMatches();
+  frame->tracked_since_ns = frame->timestamp_ns;
   frame->camera_from_map = map_from_first_camera.Inverse();
   const KeyframeId id = map->InsertKeyframe(*frame).id;
   std::vector<int> measured;

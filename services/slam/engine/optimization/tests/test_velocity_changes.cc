@@ -86,6 +86,44 @@ TEST(VelocityChanges, ToldByNobodyWhoStandsOrWasAwayOrMeasuresDepth) {
   EXPECT_TRUE(CopyBundleProblem(stereo, All(stereo)).velocity_changes.empty());
 }
 
+struct Stop {
+  double z, time_s, tracked_since_s;
+};
+
+/// A keyframe at each stop, without landmarks.
+SlamMap MapOfStops(const std::vector<Stop>& stops) {
+  Scene scene(100, 5, 20, 60);
+  SlamMap map(0, TestScales());
+  for (const Stop& stop : stops) {
+    Frame frame =
+        scene.Observe(TestCamera(), TestScales(), CameraAt({0, 0, stop.z}), static_cast<int64_t>(stop.time_s * 1e9), 0);
+    frame.tracked_since_ns = static_cast<int64_t>(stop.tracked_since_s * 1e9);
+    map.InsertKeyframe(frame);
+  }
+  return map;
+}
+
+TEST(VelocityChanges, EndWhereALostCameraLeapt) {
+  const SlamMap leap = MapOfStops({{0, 0.5, 0}, {2, 1, 0}, {4, 1.5, 0}, {80, 2, 2}, {82, 2.5, 2}, {84, 3, 2}});
+  const std::vector<VelocityChange> changes = CopyBundleProblem(leap, All(leap)).velocity_changes;
+  ASSERT_EQ(changes.size(), 2U);
+  // Nor is the leap taken for the top speed.
+  for (const VelocityChange& change : changes) EXPECT_NEAR(change.sigma, std::sqrt(1.0 / 3), 0.02);
+}
+
+TEST(VelocityChanges, GoOnWhereALostCameraIsSoonFoundOnItsWay) {
+  const SlamMap lost = MapOfStops({{0, 0.5, 0}, {2, 1, 0}, {4, 1.5, 0}, {6, 2, 2}, {8, 2.5, 2}, {10, 3, 2}});
+  EXPECT_EQ(CopyBundleProblem(lost, All(lost)).velocity_changes.size(), 4U);
+}
+
+TEST(VelocityChanges, DoNotMixDrivesWithTheSameTimes) {
+  const SlamMap days =
+      MapOfStops({{0, 0.5, 0.5}, {2, 1, 0.5}, {4, 1.5, 0.5}, {11, 0.7, 0.7}, {13, 1.2, 0.7}, {15, 1.7, 0.7}});
+  const std::vector<VelocityChange> changes = CopyBundleProblem(days, All(days)).velocity_changes;
+  ASSERT_EQ(changes.size(), 2U);
+  for (const VelocityChange& change : changes) EXPECT_NEAR(change.earlier_s + change.later_s, 1, 1e-9);
+}
+
 TEST(VelocityChanges, HoldTheScaleWhereLandmarksSayLittle) {
   const Scene scene(100, 5, 20, 60);
   const SlamMap map = Drive(scene, TestCamera(), {0, 2, 4, 6, 7});  // the last should be at 8

@@ -108,7 +108,7 @@ TEST_F(MapFile, IsRefusedInOneLineWhenItIsNotWhole) {
   EXPECT_EQ(WhyRefused(flipped), "is damaged: its checksum does not fit");
   std::vector<uint8_t> newer = bytes_;
   newer[8] = 9;
-  EXPECT_EQ(WhyRefused(newer), "is of version 9, expected 1");
+  EXPECT_EQ(WhyRefused(newer), "is of version 9, expected 2");
 }
 
 TEST_F(MapFile, IsRefusedForAnotherCamera) {
