@@ -217,9 +217,9 @@ void Engine::LookForLoops(KeyframeId mapped, TrackingResult* result) {
 void Engine::Flush() {
   if (options_.localize_only) return;
   SettleMaps();
-  if (map() != nullptr) BelieveLens(mapper_.Finish(map()));
+  if (map() != nullptr) BelieveLens(mapper_.Finish(map(), camera_.remaining_radial()));
   for (const auto& other : atlas_.maps()) {
-    if (other.get() != map()) mapper_.Finish(other.get());
+    if (other.get() != map()) mapper_.Finish(other.get(), camera_.remaining_radial());
   }
   if (map() == nullptr) return;
   if (ground_scale_) ground_scale_->Finish(map());

@@ -14,17 +14,18 @@ bool FinalAdjuster::MeasuresDepth(const BundleProblem& problem) {
                      [](const BundleObservation& observation) { return !std::isnan(observation.right_x_px); });
 }
 
-double FinalAdjuster::Adjust(SlamMap* map) const {
+double FinalAdjuster::Adjust(SlamMap* map, double known_radial) const {
   const std::vector<KeyframeId> live = map->LiveKeyframes();
   if (live.size() <= 2) return 0;  // adjusted when it was made
   const size_t left_out = live.size() - std::min(live.size(), static_cast<size_t>(options_.keyframes));
   const BundleProblem solved =
-      Solve(CopyBundleProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end())));
+      Solve(CopyBundleProblem(*map, std::set<KeyframeId>(live.begin() + left_out, live.end())), known_radial);
   WriteBackBundle(solved, map);
   return MeasuresDepth(solved) ? 0 : solved.radial;
 }
 
-BundleProblem FinalAdjuster::Solve(BundleProblem problem, const std::atomic<bool>* cancelled) const {
+BundleProblem FinalAdjuster::Solve(BundleProblem problem, double known_radial,
+                                   const std::atomic<bool>* cancelled) const {
   if (options_.bundle.radial_sigma == 0 || MeasuresDepth(problem)) {
     SolveBundle(camera_, options_.bundle, &problem, cancelled);
     return problem;
@@ -34,10 +35,13 @@ BundleProblem FinalAdjuster::Solve(BundleProblem problem, const std::atomic<bool
   BundleProblem bent = problem;
   SolveBundleRobustly(camera_, bending, &bent, cancelled);
   SolveBundleRobustly(camera_, straight, &problem, cancelled);
-  const bool explains = bent.robust_cost <= (1 - options_.least_explained) * problem.robust_cost;
+  const auto is_likely = [&] { return std::abs(known_radial + bent.radial) <= options_.most_radial; };
   // Outliers are left out only where it is known which camera they are outliers of.
-  if (explains) problem = std::move(bent);
-  SolveBundleWithoutOutliers(camera_, explains ? bending : straight, &problem, cancelled);
+  if (is_likely() && bent.robust_cost <= (1 - options_.least_explained) * problem.robust_cost) {
+    SolveBundleWithoutOutliers(camera_, bending, &bent, cancelled);
+    if (is_likely()) return bent;
+  }
+  SolveBundleWithoutOutliers(camera_, straight, &problem, cancelled);
   return problem;
 }
 

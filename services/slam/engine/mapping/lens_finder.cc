@@ -10,7 +10,7 @@ namespace kinemap {
 LensFinder::LensFinder(const LensFinderOptions& options, const CameraModel& camera)
     : options_(options), adjuster_(options.adjustment, camera), next_keyframes_(options.first_keyframes) {}
 
-void LensFinder::Look(const SlamMap& map, int64_t frame_index) {
+void LensFinder::Look(const SlamMap& map, int64_t frame_index, double known_radial) {
   if (options_.adjustment.bundle.radial_sigma == 0 || !IsFree()) return;
   const int keyframes = map.live_keyframe_count();
   if (keyframes > options_.most_keyframes || keyframes < next_keyframes_) return;
@@ -20,8 +20,8 @@ void LensFinder::Look(const SlamMap& map, int64_t frame_index) {
   const auto delay = static_cast<int64_t>(problem.observations.size()) / options_.observations_per_frame;
   slot_.Start(
       std::move(problem),
-      [adjuster = adjuster_](const std::atomic<bool>& cancelled, BundleProblem* bundle) {
-        *bundle = adjuster.Solve(std::move(*bundle), &cancelled);
+      [adjuster = adjuster_, known_radial](const std::atomic<bool>& cancelled, BundleProblem* bundle) {
+        *bundle = adjuster.Solve(std::move(*bundle), known_radial, &cancelled);
       },
       frame_index + options_.shortest_delay_frames + delay);
 }

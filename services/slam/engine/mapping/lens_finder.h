@@ -25,8 +25,8 @@ class LensFinder {
   LensFinder(const LensFinderOptions& options, const CameraModel& camera);
 
   /// Copies the map when it has keyframes enough for another look, and no depths are measured, which keep it from
-  /// bending. Its solution is due a fixed number of frames later.
-  void Look(const SlamMap& map, int64_t frame_index);
+  /// bending. Its solution is due a fixed number of frames later. `known_radial` was taken out of the features before.
+  void Look(const SlamMap& map, int64_t frame_index, double known_radial = 0);
 
   bool IsFree() const { return slot_.IsFree(); }
   bool IsDue(int64_t frame_index) const { return slot_.IsDue(frame_index, options_.wait); }

@@ -69,10 +69,10 @@ void LocalMapper::Leave(SlamMap* map) {
   newest_ = kNoId;
 }
 
-double LocalMapper::Finish(SlamMap* map) {
+double LocalMapper::Finish(SlamMap* map, double known_radial) {
   FinishMapping();
   if (!slot_.IsFree()) Merge(map);
-  return final_adjuster_.Adjust(map);
+  return final_adjuster_.Adjust(map, known_radial);
 }
 
 }  // namespace kinemap

@@ -63,7 +63,7 @@ class LocalMapper {
 
   /// Merges what is pending, whatever frame it is due, and adjusts the whole map, or its newest part, once more.
   /// Returns the radial distortion that was believed, 0 for none.
-  double Finish(SlamMap* map);
+  double Finish(SlamMap* map, double known_radial);
 
  private:
   void Merge(SlamMap* map);

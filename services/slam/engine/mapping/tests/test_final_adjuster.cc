@@ -51,6 +51,14 @@ TEST(FinalAdjuster, BelievesADistortionThatExplainsTheImages) {
   EXPECT_NEAR(FinalAdjuster(options, TestCamera()).Adjust(&map), 0.03, 0.01);
 }
 
+TEST(FinalAdjuster, BelievesNoMoreThanACalibrationMayHaveLeft) {
+  SlamMap map = MapThrough(0.03);
+  FinalAdjusterOptions options;
+  options.bundle.radial_sigma = 0.05;
+  EXPECT_EQ(FinalAdjuster(options, TestCamera()).Adjust(&map, 0.04), 0);
+  EXPECT_NEAR(FinalAdjuster(options, TestCamera()).Adjust(&map, -0.04), 0.03, 0.01);
+}
+
 TEST(FinalAdjuster, TakesNoneFromNoiseAndStillAdjusts) {
   SlamMap map = MapThrough(0);
   EXPECT_EQ(FinalAdjuster({}, TestCamera()).Adjust(&map), 0);
