@@ -123,5 +123,5 @@ def check_segmenter_ways(config: Config) -> Check:
     except InputError as error:
         return Check(name, None, f"no network to run ({error})")
     found = "; ".join(f"{choice} ({key})" for key, choice in known.items())
-    faster = "" if any(installed()) else ". On a CPU `pip install kinemap[cpu]` gives it faster libraries than torch"
+    faster = "" if any(installed()) else ". `pip install onnx openvino onnxruntime`: faster than torch on a CPU"
     return Check(name, None, f"{found or 'not measured yet: its first run here does that'}{faster}")

@@ -55,7 +55,7 @@ def asked_ways(
         if device != "cpu":
             raise InputError(f"segmenter.runtime {runtime}: runs on processors only, expected segmenter.device cpu")
         if not any(way.runtime == runtime for way in here):
-            raise ResourceError(f"segmenter.runtime {runtime}: not installed for it, expected pip install kinemap[cpu]")
+            raise ResourceError(f"segmenter.runtime {runtime}: not installed; expected pip install {runtime} onnx")
         possible = precisions(device, runtime)
         if precision not in ("auto", *possible):
             raise InputError(f"segmenter.precision {precision}: {runtime} has {', '.join(possible)} on this processor")

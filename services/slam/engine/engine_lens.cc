@@ -6,7 +6,8 @@
 namespace kinemap {
 
 void Engine::LookThroughLens() {
-  if (!options_.localize_only && loop_closer_.IsFree()) lens_finder_.Look(*map(), frame_index_, camera_.remaining_radial());
+  if (!options_.localize_only && loop_closer_.IsFree())
+    lens_finder_.Look(*map(), frame_index_, camera_.remaining_radial());
 }
 
 void Engine::TakeLens() {

@@ -8,8 +8,8 @@
 
 namespace kinemap {
 
-/// Ids as they are counted in an IdTable, a bit for each. Unlike the nodes of a std::set, what thousands of insertions a
-/// frame touch stays close together however long the engine has run.
+/// Ids as they are counted in an IdTable, a bit for each. Unlike the nodes of a std::set, what thousands of insertions
+/// a frame touch stays close together however long the engine has run.
 class IdSet {
  public:
   /// Whether the id (not negative) was not there before.

@@ -43,7 +43,7 @@ def test_what_is_asked_for() -> None:
 
 
 def test_what_cannot_be_had_is_named() -> None:
-    with pytest.raises(ResourceError, match=r"runtime onnxruntime: not installed.*pip install kinemap\[cpu\]"):
+    with pytest.raises(ResourceError, match=r"runtime onnxruntime: not installed.*pip install onnxruntime onnx"):
         asked_ways(HERE, "onnxruntime", "auto", "cpu")
     with pytest.raises(InputError, match=r"runtime openvino: runs on processors only, expected segmenter.device cpu"):
         asked_ways(HERE, "openvino", "auto", "cuda")
