@@ -41,6 +41,13 @@ def segmenter(
     start_from: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Begin with these weights (same variant and categories).")
     ] = None,
+    backbone: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Begin with this backbone learned at ImageNet (.pth of torchvision's ResNet or EfficientNet-Lite0).",
+        ),
+    ] = None,
     size: Annotated[
         list[str] | None,
         typer.Option(
@@ -83,6 +90,7 @@ def segmenter(
     from services.segmenter.solov2.variants import VARIANTS
     from services.segmenter.torch_device import torch_device
     from services.segmenter.training.trainer import Precision, Trainer, TrainingOptions
+    from services.segmenter.weights.imagenet_backbone import read_backbone
 
     if variant not in VARIANTS:
         raise InputError(f"--variant {variant}: expected one of {', '.join(VARIANTS)}")
@@ -109,7 +117,8 @@ def segmenter(
         precision=cast(Precision, precision),
     )
     weights = _weights(start_from, variant, categories)
-    trainer = Trainer(options, samples, out, torch_device(device, "--device"), workers, weights)
+    learned = None if backbone is None else read_backbone(backbone, VARIANTS[variant].backbone)
+    trainer = Trainer(options, samples, out, torch_device(device, "--device"), workers, weights, learned)
     _train(trainer, validation, out, save_every, validate_every or save_every)
     print(out / MODEL_NAME)
 

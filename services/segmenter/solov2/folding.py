@@ -7,17 +7,18 @@ from typing import Protocol, TypeVar, cast
 from torch import nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
-from services.segmenter.solov2.resnet import ResNet
+from services.segmenter.solov2.backbones import Backbone
 
 
 class _WithBackbone(Protocol):
-    backbone: ResNet
+    backbone: Backbone
 
 
 Network = TypeVar("Network", bound=nn.Module)
 
-_PAIRS = (("conv1", "bn1"), ("conv2", "bn2"), ("conv3", "bn3"), ("0", "1"))
-"""names of a convolution and what normalises its output, in a residual block, the stem and a shortcut"""
+_PAIRS = (("conv1", "bn1"), ("conv2", "bn2"), ("conv3", "bn3"), ("0", "1"), ("conv", "norm"))
+"""names of a convolution and what normalises its output: in a residual block, the stem and a shortcut of ResNet; in
+EfficientNet"""
 
 
 def folded(network: Network) -> Network:

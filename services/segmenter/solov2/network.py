@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 from torch import Tensor, nn
 
+from services.segmenter.solov2.backbones import BACKBONES
 from services.segmenter.solov2.fpn import Fpn
 from services.segmenter.solov2.head import HeadOutput, SoloV2Head
-from services.segmenter.solov2.resnet import ResNet
 from services.segmenter.solov2.variants import GRIDS, Variant
 
 
@@ -17,11 +17,15 @@ class SoloV2(nn.Module):
     def __init__(self, variant: Variant, categories: int) -> None:
         super().__init__()
         self.variant = variant
-        self.backbone = ResNet(variant.depth)
+        self.backbone = BACKBONES[variant.backbone]()
         self.neck = Fpn(self.backbone.out_channels, variant.pyramid_channels)
         self.mask_head = SoloV2Head(variant, categories)
 
     def forward(self, images: Tensor, grids: Sequence[int] = GRIDS) -> HeadOutput:
         """(N, 3, H, W), normalised as preprocessing.py does it; H and W multiples of 32. `grids`: cells a side."""
-        output: HeadOutput = self.mask_head(self.neck(self.backbone(images)), grids)
+        return self.from_maps(self.backbone(images), grids)
+
+    def from_maps(self, maps: Sequence[Tensor], grids: Sequence[int] = GRIDS) -> HeadOutput:
+        """What follows the backbone's four maps, finest first."""
+        output: HeadOutput = self.mask_head(self.neck(maps), grids)
         return output

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 MULTIPLE_PX = 32
-_MEAN_RGB = np.array([123.675, 116.28, 103.53], np.float32)
-_STD_RGB = np.array([58.395, 57.12, 57.375], np.float32)
+MEAN_RGB = np.array([123.675, 116.28, 103.53], np.float32)
+STD_RGB = np.array([58.395, 57.12, 57.375], np.float32)
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def prepare(image: npt.NDArray[np.uint8], box: tuple[int, int]) -> NetworkInput:
 def normalized(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     """(H, W, 3) BGR to (3, H, W) RGB without ImageNet's mean and in units of its deviation."""
     rgb = image[..., ::-1].astype(np.float32)
-    return np.ascontiguousarray(((rgb - _MEAN_RGB) / _STD_RGB).transpose(2, 0, 1))
+    return np.ascontiguousarray(((rgb - MEAN_RGB) / STD_RGB).transpose(2, 0, 1))
 
 
 def _rounded_up(size_px: int) -> int:

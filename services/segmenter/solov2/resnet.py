@@ -8,7 +8,7 @@ from typing import cast
 
 from torch import Tensor, nn
 
-_DEPTHS = {18: (2, 2, 2, 2), 34: (3, 4, 6, 3), 50: (3, 4, 6, 3), 101: (3, 4, 23, 3)}
+DEPTHS = {18: (2, 2, 2, 2), 34: (3, 4, 6, 3), 50: (3, 4, 6, 3), 101: (3, 4, 23, 3)}
 _WIDTHS = (64, 128, 256, 512)
 _STEM_CHANNELS = 64
 
@@ -75,7 +75,7 @@ class ResNet(nn.Module):
         self.maxpool = nn.MaxPool2d(3, 2, 1)
         in_channels = _STEM_CHANNELS
         stages = []
-        for index, (blocks, width) in enumerate(zip(_DEPTHS[depth], _WIDTHS, strict=True)):
+        for index, (blocks, width) in enumerate(zip(DEPTHS[depth], _WIDTHS, strict=True)):
             stages.append(_stage(block, in_channels, width, blocks, stride=1 if index == 0 else 2))
             in_channels = width * block.expansion
         self.layer1, self.layer2, self.layer3, self.layer4 = stages

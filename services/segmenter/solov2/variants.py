@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The configurations of SOLOv2, those that there are public weights for and a smaller one, and their numbers."""
+"""The configurations of SOLOv2, those that there are public weights for and two smaller ones, and their numbers."""
 
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -16,6 +16,7 @@ STRIDES: Final = (8, 8, 16, 32, 32)
 class Variant:
     """What one configuration differs in from the others.
 
+    `backbone`: of backbones.BACKBONES.
     `scale_ranges_px`: the square root of an instance's area (box) that a level learns, one pair a level.
     `test_size`: the box (width, height) that an image is fitted into.
     `pyramid_channels`, `branch_channels`: of the feature pyramid and within the mask feature branch.
@@ -23,7 +24,7 @@ class Variant:
     smaller is no instance.
     """
 
-    depth: int
+    backbone: str
     stacked_convs: int
     feature_channels: int
     mask_channels: int
@@ -44,21 +45,45 @@ _LIGHT_RANGES = ((1, 56), (28, 112), (56, 224), (112, 448), (224, 896))
 
 
 def _full(depth: int) -> Variant:
-    return Variant(depth, 4, 512, 256, _FULL_RANGES, (1333, 800))
+    return Variant(f"resnet{depth}", 4, 512, 256, _FULL_RANGES, (1333, 800))
 
 
 def _light(depth: int) -> Variant:
-    return Variant(depth, 2, 256, 128, _LIGHT_RANGES, (852, 448))
+    return Variant(f"resnet{depth}", 2, 256, 128, _LIGHT_RANGES, (852, 448))
 
 
 def _compact(depth: int) -> Variant:
     return Variant(
-        depth, 2, 128, 64, _LIGHT_RANGES, (852, 448), pyramid_channels=128, branch_channels=64, least_area=0.25
+        f"resnet{depth}",
+        2,
+        128,
+        64,
+        _LIGHT_RANGES,
+        (852, 448),
+        pyramid_channels=128,
+        branch_channels=64,
+        least_area=0.25,
+    )
+
+
+def _compact_lite() -> Variant:
+    # what the cheaper backbone saves goes into larger images, which small instances need most
+    return Variant(
+        "efficientnet-lite0",
+        2,
+        128,
+        64,
+        _LIGHT_RANGES,
+        (1024, 512),
+        pyramid_channels=96,
+        branch_channels=64,
+        least_area=0.25,
     )
 
 
 VARIANTS: Final = MappingProxyType(
     {
+        "solov2-compact_lite0": _compact_lite(),
         "solov2-compact_r18": _compact(18),
         "solov2-light_r18": _light(18),
         "solov2-light_r34": _light(34),

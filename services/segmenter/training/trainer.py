@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop: batches in, a network out, resumable at every save."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -10,6 +10,9 @@ import torch
 from torch import nn
 
 from services.segmenter.processor import multiplies_bfloat16
+from services.segmenter.solov2.backbones import early_part
+from services.segmenter.solov2.efficientnet_lite import EfficientNetLite
+from services.segmenter.solov2.head import HeadOutput
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.variants import VARIANTS
 from services.segmenter.training.averaged_weights import AveragedWeights
@@ -20,6 +23,8 @@ from services.segmenter.training.sample import Samples
 from services.segmenter.training.training_state import TrainingState, load_training_state
 
 _MAX_GRADIENT = 10.0
+_LEARNED_BACKBONE_RATE = 0.3
+"""of the learning rate, for a backbone that was learned before"""
 STATE_NAME = "training.pt"
 
 
@@ -73,6 +78,8 @@ class Trainer:
     workers: int = 0
     start_from: dict[str, torch.Tensor] | None = None
     """weights to begin with; random otherwise"""
+    backbone: dict[str, torch.Tensor] | None = None
+    """its weights, learned at ImageNet: what they know is kept, all but the finest maps' part adapts slowly"""
     augmentation: Augmentation | None = None
     """all of Augmentations when not given"""
     curves: dict[str, list[list[float]]] = field(default_factory=dict)
@@ -84,9 +91,17 @@ class Trainer:
         _initialize(network)
         if self.start_from is not None:
             network.load_state_dict(self.start_from)
+        if self.backbone is not None:
+            network.backbone.load_state_dict(self.backbone)
+            for part in early_part(network.backbone):
+                part.requires_grad_(False)
         self._network = network.to(self.device).to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self._average = AveragedWeights(self._network)
-        self._optimizer = torch.optim.AdamW(_parameter_groups(self._network, self.options.weight_decay))
+        self._optimizer = torch.optim.AdamW(
+            _parameter_groups(
+                self._network, self.options.weight_decay, 1.0 if self.backbone is None else _LEARNED_BACKBONE_RATE
+            )
+        )
         # bfloat16 needs no scaling; half precision of older cards does
         self._dtype = _mixed_precision(self.device, self.options.precision)
         self._scaler = torch.amp.GradScaler(self.device.type, enabled=self._dtype == torch.float16)
@@ -98,6 +113,9 @@ class Trainer:
     def run(self, until: int, report: Callable[[StepReport], None]) -> None:
         """Train up to step `until`, then write the state."""
         self._network.train()
+        if self.backbone is not None:
+            # a few sections of streets say less about means and deviations than ImageNet
+            self._network.backbone.eval()
         for batch in self._batches(until):
             report(self._train(batch.to(self.device)))
         self._state().save(self.folder / STATE_NAME)
@@ -124,11 +142,11 @@ class Trainer:
             cool_down=options.cool_down,
         )
         for group in self._optimizer.param_groups:
-            group["lr"] = rate
+            group["lr"] = rate * group["share"]
         self._optimizer.zero_grad(set_to_none=True)
         images = batch.images.contiguous(memory_format=torch.channels_last)
         with torch.autocast(self.device.type, self._dtype, enabled=self._dtype != torch.float32):
-            output = self._network(images, batch.targets.grids)
+            output = self._output(images, batch.targets.grids)
             loss = segmentation_loss(output, batch.targets)
         self._scaler.scale(loss.total).backward()  # type: ignore[no-untyped-call]
         self._scaler.unscale_(self._optimizer)
@@ -138,6 +156,16 @@ class Trainer:
         self._average.update(self._network)
         self.step += 1
         return StepReport(self.step, loss.category.item(), loss.mask.item(), rate)
+
+    def _output(self, images: torch.Tensor, grids: Sequence[int]) -> HeadOutput:
+        # the gradient of convolutions of one filter a channel takes twice as long in bfloat16 on a CPU
+        slow_in_16_bits = self.device.type == "cpu" and isinstance(self._network.backbone, EfficientNetLite)
+        with torch.autocast(
+            self.device.type, self._dtype, enabled=torch.is_autocast_enabled(self.device.type) and not slow_in_16_bits
+        ):
+            maps = self._network.backbone(images)
+        output: HeadOutput = self._network.from_maps(maps, grids)
+        return output
 
     def _state(self) -> TrainingState:
         return TrainingState(
@@ -174,11 +202,16 @@ def _initialize(network: SoloV2) -> None:
         nn.init.constant_(network.mask_head.conv_cls.bias, -4.595)  # log(0.01 / 0.99)
 
 
-def _parameter_groups(network: nn.Module, weight_decay: float) -> list[dict[str, Any]]:
-    """Normalisations and biases are not decayed."""
-    decayed = [value for value in network.parameters() if value.ndim > 1]
-    others = [value for value in network.parameters() if value.ndim <= 1]
-    return [{"params": decayed, "weight_decay": weight_decay}, {"params": others, "weight_decay": 0.0}]
+def _parameter_groups(network: SoloV2, weight_decay: float, backbone_share: float) -> list[dict[str, Any]]:
+    """Normalisations and biases are not decayed; `backbone_share`: of the learning rate."""
+    groups = []
+    for part, share in ((network.backbone, backbone_share), (network.neck, 1.0), (network.mask_head, 1.0)):
+        learned = [value for value in part.parameters() if value.requires_grad]
+        decayed = [value for value in learned if value.ndim > 1]
+        others = [value for value in learned if value.ndim <= 1]
+        groups.append({"params": decayed, "weight_decay": weight_decay, "share": share})
+        groups.append({"params": others, "weight_decay": 0.0, "share": share})
+    return groups
 
 
 def _mixed_precision(device: torch.device, precision: Precision) -> torch.dtype:

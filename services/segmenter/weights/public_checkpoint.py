@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads mmdetection's SOLOv2 checkpoints: by their own names, and never by running what is in them."""
 
-import pickle
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +11,7 @@ from schemas.categories import CATEGORY_NAMES
 from services.runtime.errors import InputError
 from services.segmenter.networks import NAMES, build, input_box
 from services.segmenter.weights.model_file import ModelDescription
+from services.segmenter.weights.torch_file import load_torch_file
 
 _CATEGORY_WEIGHTS = ("mask_head.conv_cls.weight", "roi_head.mask_head.conv_logits.weight")
 """of SOLOv2 and of Mask R-CNN: one row a category"""
@@ -24,7 +23,7 @@ def read_checkpoint(path: Path, sha256: str) -> tuple[ModelDescription, dict[str
     Raises:
         InputError: it is no checkpoint, holds more than tensors and plain values, or is of no variant known here.
     """
-    content = _load(path)
+    content = load_torch_file(path, "a checkpoint of mmdetection's SOLOv2")
     state = content.get("state_dict", content) if isinstance(content, dict) else None
     if not isinstance(state, dict) or not all(isinstance(value, Tensor) for value in state.values()):
         raise InputError(f"{path}: holds no state_dict of tensors, expected a checkpoint of mmdetection's SOLOv2")
@@ -35,21 +34,6 @@ def read_checkpoint(path: Path, sha256: str) -> tuple[ModelDescription, dict[str
     variant = _variant_of(path, state, categories)
     names = _category_names(path, content, categories)
     return ModelDescription(variant, names, input_box(variant), path.name, sha256), dict(state)
-
-
-def _load(path: Path) -> Any:
-    if not path.is_file():
-        raise InputError(f"{path}: no such file, expected a checkpoint of mmdetection's SOLOv2")
-    try:
-        return torch.load(path, map_location="cpu", weights_only=True)
-    except pickle.UnpicklingError as error:
-        raise InputError(f"{path}: refused, it holds more than tensors and plain values ({_brief(error)})") from error
-    except (RuntimeError, EOFError, OSError, zipfile.BadZipFile, ValueError, KeyError) as error:
-        raise InputError(f"{path}: not a whole checkpoint ({_brief(error)})") from error
-
-
-def _brief(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0][:160]
 
 
 def _variant_of(path: Path, state: dict[str, Tensor], categories: int) -> str:
