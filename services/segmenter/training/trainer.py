@@ -108,7 +108,7 @@ class Trainer:
         self.step = 0
         state_path = self.folder / STATE_NAME
         if state_path.is_file():
-            self._restore(load_training_state(state_path, self.options.identity))
+            self._restore(load_training_state(state_path, self._settings))
 
     def run(self, until: int, report: Callable[[StepReport], None]) -> None:
         """Train up to step `until`, then write the state."""
@@ -170,7 +170,7 @@ class Trainer:
     def _state(self) -> TrainingState:
         return TrainingState(
             self.step,
-            self.options.identity,
+            self._settings,
             self._network.state_dict(),
             self._average.state(),
             self._average.updates,
@@ -178,6 +178,10 @@ class Trainer:
             self._scaler.state_dict(),
             self.curves,
         )
+
+    @property
+    def _settings(self) -> dict[str, Any]:
+        return {**self.options.identity, "backbone": "random" if self.backbone is None else "learned"}
 
     def _restore(self, state: TrainingState) -> None:
         self.step = state.step

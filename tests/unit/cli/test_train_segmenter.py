@@ -55,7 +55,7 @@ def test_learns_judges_saves_and_goes_on_for_longer(data: str, tmp_path: Path) -
     ("arguments", "why"),
     [
         (("--size", "100x64"), "--size 100x64: expected multiples of 32"),
-        (("--variant", "yolo"), "--variant yolo: expected one of solov2-compact_r18"),
+        (("--variant", "yolo"), "--variant yolo: expected one of solov2-compact_lite0"),
         (("--precision", "int3"), "--precision int3: expected one of auto, fp32, fp16, bf16"),
         (("--category", "dog"), "0 of the categories dog"),
     ],

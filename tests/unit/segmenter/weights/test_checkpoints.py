@@ -95,7 +95,7 @@ class TestRefused:
     def test_other_shapes(self, tmp_path: Path, content: Any) -> None:
         state = {**content["state_dict"], "backbone.conv1.weight": torch.zeros(64, 3, 3, 3)}
         torch.save({**content, "state_dict": state}, tmp_path / "other.pth")
-        self._refused(tmp_path / "other.pth", "its tensors fit none of solov2-compact_r18, ")
+        self._refused(tmp_path / "other.pth", "its tensors fit none of solov2-compact_lite0, ")
 
     def test_deformable_convolutions(self, tmp_path: Path, content: Any) -> None:
         state = {**content["state_dict"], "mask_head.cls_convs.1.conv.conv_offset.weight": torch.zeros(1)}
@@ -157,5 +157,5 @@ def test_mask_rcnn_is_no_network_to_train(tmp_path: Path) -> None:
     description = ModelDescription("mask-rcnn_r50", ("car",), (96, 64), "a test")
     save_model(path, description, MaskRcnn(50, 1).state_dict(), half=True)
     assert isinstance(load_network(path)[0], MaskRcnn)
-    with pytest.raises(InputError, match=r"mask-rcnn_r50, expected one of solov2-compact_r18"):
+    with pytest.raises(InputError, match=r"mask-rcnn_r50, expected one of solov2-compact_lite0"):
         load_solov2(path)
