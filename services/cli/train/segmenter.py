@@ -37,7 +37,7 @@ def segmenter(
     category: Annotated[
         list[str] | None, typer.Option(help=f"What to learn; may be repeated (default: {', '.join(_CATEGORIES)}).")
     ] = None,
-    variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-compact_r18",
+    variant: Annotated[str, typer.Option(help="The network; see `kinemap weights list`.")] = "solov2-compact_lite0",
     start_from: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Begin with these weights (same variant and categories).")
     ] = None,

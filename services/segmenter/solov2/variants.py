@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The configurations of SOLOv2, those that there are public weights for and two smaller ones, and their numbers."""
+"""The configurations of SOLOv2, those that there are public weights for and a smaller one, and their numbers."""
 
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -52,21 +52,7 @@ def _light(depth: int) -> Variant:
     return Variant(f"resnet{depth}", 2, 256, 128, _LIGHT_RANGES, (852, 448))
 
 
-def _compact(depth: int) -> Variant:
-    return Variant(
-        f"resnet{depth}",
-        2,
-        128,
-        64,
-        _LIGHT_RANGES,
-        (852, 448),
-        pyramid_channels=128,
-        branch_channels=64,
-        least_area=0.25,
-    )
-
-
-def _compact_lite() -> Variant:
+def _compact() -> Variant:
     # what the cheaper backbone saves goes into larger images, which small instances need most
     return Variant(
         "efficientnet-lite0",
@@ -83,8 +69,7 @@ def _compact_lite() -> Variant:
 
 VARIANTS: Final = MappingProxyType(
     {
-        "solov2-compact_lite0": _compact_lite(),
-        "solov2-compact_r18": _compact(18),
+        "solov2-compact_lite0": _compact(),
         "solov2-light_r18": _light(18),
         "solov2-light_r34": _light(34),
         "solov2-light_r50": _light(50),

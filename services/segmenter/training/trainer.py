@@ -38,7 +38,7 @@ class TrainingOptions:
     All but the variant and the categories may change when a training goes on.
     """
 
-    variant: str = "solov2-compact_r18"
+    variant: str = "solov2-compact_lite0"
     categories: tuple[str, ...] = ()
     sizes: tuple[tuple[int, int], ...] = ((448, 224),)
     """(width, height) of a training image, multiples of 32: each batch has one of them"""

@@ -41,7 +41,7 @@ HEADER = (
     "same masks (IoU 0.98)",
     "median IoU (least)",
 )
-_DRAWN = ("solov2-light_r18", "solov2-compact_r18", "mask-rcnn_r50")
+_DRAWN = ("solov2-light_r18", "solov2-compact_lite0", "mask-rcnn_r50")
 _COMMAND = "OMP_WAIT_POLICY=passive python -m tests.benchmark.segmenter.runtimes"
 _DRAWN_BOX = (852, 448)
 

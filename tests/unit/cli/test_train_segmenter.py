@@ -45,7 +45,7 @@ def test_learns_judges_saves_and_goes_on_for_longer(data: str, tmp_path: Path) -
     assert "step 1 of 2" in said
     assert "mask AP50" in said
     _, description = load_solov2(out / "model.safetensors")
-    assert description.variant == "solov2-compact_r18"
+    assert description.variant == "solov2-compact_lite0"
     assert description.categories[:3] == ("person", "bicycle", "car")
     assert (out / "curves.png").stat().st_size > 1000
     assert "step 3 of 3" in _train(data, "--out", str(out), "--steps", "3", "--save-every", "1", "--size", "96x64")
@@ -57,6 +57,7 @@ def test_learns_judges_saves_and_goes_on_for_longer(data: str, tmp_path: Path) -
         (("--size", "100x64"), "--size 100x64: expected multiples of 32"),
         (("--variant", "yolo"), "--variant yolo: expected one of solov2-compact_lite0"),
         (("--precision", "int3"), "--precision int3: expected one of auto, fp32, fp16, bf16"),
+        (("--backbone", "none.pth"), "none.pth: no such file, expected the weights of efficientnet-lite0"),
         (("--category", "dog"), "0 of the categories dog"),
     ],
 )

@@ -42,8 +42,8 @@ class _Found:
 
 def _save(path: Path, categories: tuple[str, ...] = CATEGORIES) -> Path:
     torch.manual_seed(3)
-    variant = VARIANTS["solov2-compact_r18"]
-    description = ModelDescription("solov2-compact_r18", categories, (96, 64), "a test")
+    variant = VARIANTS["solov2-light_r18"]
+    description = ModelDescription("solov2-light_r18", categories, (96, 64), "a test")
     save_model(path, description, SoloV2(variant, len(categories)).state_dict(), half=True)
     return path
 

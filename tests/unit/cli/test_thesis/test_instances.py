@@ -105,7 +105,7 @@ def test_predictions_of_other_images_are_refused(data: Path, kinemap: Any, tmp_p
 
 def test_two_networks_are_compared_by_one_command(data: Path, kinemap: Any, tmp_path: Path) -> None:
     torch.manual_seed(0)
-    baseline, other = tmp_path / "mask-rcnn_r50.safetensors", tmp_path / "solov2-compact_r18.safetensors"
+    baseline, other = tmp_path / "mask-rcnn_r50.safetensors", tmp_path / "solov2-compact_lite0.safetensors"
     for path in (baseline, other):
         network = build(path.stem, 2)
         description = ModelDescription(path.stem, ("person", "car"), (96, 64), "a test")

@@ -35,7 +35,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="module")
 def network() -> SoloV2:
     torch.manual_seed(3)
-    return folded(SoloV2(VARIANTS["solov2-compact_r18"], 3).eval())
+    return folded(SoloV2(VARIANTS["solov2-compact_lite0"], 3).eval())
 
 
 def _dense(network: SoloV2, way: Way) -> Dense:
@@ -77,7 +77,7 @@ def test_a_network_is_exported_once_for_a_size(network: SoloV2, cache: Path) -> 
     assert {path: path.stat().st_mtime_ns for path in exports_folder().iterdir()} == kept
     assert exports_folder().is_relative_to(cache)
     torch.manual_seed(4)
-    other = folded(SoloV2(VARIANTS["solov2-compact_r18"], 3).eval())
+    other = folded(SoloV2(VARIANTS["solov2-compact_lite0"], 3).eval())
     assert Exporter(other).onnx(64, 96) != first
 
 

@@ -8,7 +8,7 @@ from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.variants import VARIANTS
 
 
-@pytest.mark.parametrize("name", ["solov2-compact_r18", "solov2-light_r50"])
+@pytest.mark.parametrize("name", ["solov2-compact_lite0", "solov2-light_r50"])
 def test_a_folded_network_says_the_same(name: str) -> None:
     torch.manual_seed(0)
     network = SoloV2(VARIANTS[name], 3).eval()

@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from services.runtime.errors import InputError
+from services.segmenter.solov2.backbones import BACKBONES
 from services.segmenter.training.learning_rate import learning_rate
 from services.segmenter.training.trainer import STATE_NAME, StepReport, Trainer, TrainingOptions
 from tests.unit.segmenter.training.painted_samples import PaintedSamples
@@ -45,13 +46,31 @@ def test_a_resumed_training_ends_in_the_same_weights(tmp_path: Path) -> None:
 
 def test_a_state_of_other_options_or_cut_off_is_refused(tmp_path: Path) -> None:
     _trained(tmp_path, 1)
-    other = replace(OPTIONS, variant="solov2-compact_r18")
-    with pytest.raises(InputError, match=r"was trained with variant solov2-light_r18, expected solov2-compact_r18"):
+    other = replace(OPTIONS, variant="solov2-compact_lite0")
+    with pytest.raises(InputError, match=r"was trained with variant solov2-light_r18, expected solov2-compact_lite0"):
         Trainer(other, PaintedSamples(), tmp_path, CPU)
     state = tmp_path / STATE_NAME
     state.write_bytes(state.read_bytes()[:5000])
     with pytest.raises(InputError, match=r"training\.pt: not the whole state of a training"):
         Trainer(OPTIONS, PaintedSamples(), tmp_path, CPU)
+
+
+def test_a_learned_backbone_keeps_its_early_part_and_its_statistics(tmp_path: Path) -> None:
+    options = replace(OPTIONS, variant="solov2-compact_lite0")
+    torch.manual_seed(1)
+    begun = BACKBONES["efficientnet-lite0"]().state_dict()
+    trainer = Trainer(options, PaintedSamples(), tmp_path, CPU, backbone=begun)
+    trainer.run(3, lambda report: None)
+    learned = trainer.averaged_network().backbone.state_dict()
+    changed = {name for name, value in learned.items() if not torch.equal(value, begun[name])}
+    assert not any(name.startswith(("stem", "stages.0", "stages.1")) for name in changed)
+    assert not any("running" in name for name in changed)
+    assert "stages.6.0.project.conv.weight" in changed
+    with pytest.raises(InputError, match=r"was trained with backbone learned, expected random"):
+        Trainer(options, PaintedSamples(), tmp_path, CPU)
+    resumed = Trainer(options, PaintedSamples(), tmp_path, CPU, backbone=begun)
+    resumed.run(4, lambda report: None)
+    assert torch.equal(resumed.averaged_network().backbone.stem.conv.weight, begun["stem.conv.weight"])
 
 
 def test_a_training_can_be_made_longer(tmp_path: Path) -> None:
