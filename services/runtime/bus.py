@@ -23,6 +23,9 @@ class Subscription(Protocol):
     def receive(self, timeout_s: float) -> Message | None:
         """The oldest message, or None when none came within `timeout_s`."""
 
+    def frame_times_ns(self) -> set[int]:
+        """Capture times of the frames that messages wait of."""
+
     def drop_counts(self) -> dict[str, int]:
         """How many messages a full queue has dropped, by topic, and how many were not readable."""
 

@@ -9,12 +9,17 @@ from services.runtime.bus import Message
 
 
 class InboundQueue:
-    """First in, first out. With `keep_all` false, a topic that drops its oldest keeps `queue_depth` messages."""
+    """First in, first out. With `keep_all` false, a topic that drops its oldest keeps `queue_depth` messages.
+
+    What is sent again of a frame while it still waits here is not kept twice: a service that is slow, and is therefore
+    sent frames again, must not come to hold more of them.
+    """
 
     def __init__(self, *, keep_all: bool) -> None:
         self._keep_all = keep_all
         self._messages: deque[Message] = deque()
         self._waiting: Counter[str] = Counter()
+        self._of_frames: Counter[tuple[str, int]] = Counter()
         self._drops: Counter[str] = Counter()
         self._arrived = threading.Condition()
         self._closed = False
@@ -23,16 +28,17 @@ class InboundQueue:
         """Add a message; where its topic's queue is full, its oldest goes."""
         key = message.topic.key
         with self._arrived:
-            if self._closed:
+            if self._closed or (message.topic.per_frame and _frame_of(message) in self._of_frames):
                 return
             bounded = not self._keep_all and message.topic.when_full is WhenFull.DROP_OLDEST
             if bounded and self._waiting[key] >= message.topic.queue_depth:
                 oldest = next(index for index, waiting in enumerate(self._messages) if waiting.topic.key == key)
+                self._left(self._messages[oldest])
                 del self._messages[oldest]
-                self._waiting[key] -= 1
                 self._drops[key] += 1
             self._messages.append(message)
             self._waiting[key] += 1
+            self._of_frames[_frame_of(message)] += 1
             self._arrived.notify()
 
     def count_unreadable(self, key: str) -> None:
@@ -48,8 +54,13 @@ class InboundQueue:
             if not self._messages:
                 return None
             message = self._messages.popleft()
-            self._waiting[message.topic.key] -= 1
+            self._left(message)
             return message
+
+    def frame_times_ns(self) -> set[int]:
+        """The frames that something waits of."""
+        with self._arrived:
+            return {time_ns for _, time_ns in self._of_frames}
 
     def drop_counts(self) -> dict[str, int]:
         """Drops so far, by topic."""
@@ -61,3 +72,14 @@ class InboundQueue:
         with self._arrived:
             self._closed = True
             self._arrived.notify_all()
+
+    def _left(self, message: Message) -> None:
+        self._waiting[message.topic.key] -= 1
+        frame = _frame_of(message)
+        self._of_frames[frame] -= 1
+        if not self._of_frames[frame]:
+            del self._of_frames[frame]
+
+
+def _frame_of(message: Message) -> tuple[str, int]:
+    return message.topic.key, message.envelope.timestamp_ns

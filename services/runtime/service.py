@@ -48,6 +48,8 @@ class FrameService(ABC):
     """what must have come under the end's sequence number before `finish`"""
     deferrable: ClassVar[tuple[Topic, ...]] = ()
     """inputs that a deadline does not wait for (realtime)"""
+    most_pending: ClassVar[int | None] = None
+    """incomplete frames held at most in `realtime`, where that is fewer than delivery.pending_bundles"""
     answers: ClassVar[bool] = False
     """whether the camera counts on this service's answer to every frame (lossless)"""
 

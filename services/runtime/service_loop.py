@@ -17,6 +17,10 @@ from services.runtime.service import Bundle, FrameService
 from services.runtime.synchronizer import RawBundle, Synchronizer
 
 
+def _least(pending_bundles: int, service: FrameService) -> int:
+    return pending_bundles if service.most_pending is None else min(pending_bundles, service.most_pending)
+
+
 class FrameLoop:
     """Drives one FrameService from one bus.
 
@@ -41,7 +45,7 @@ class FrameLoop:
             service.awaits,
             final_awaits=service.final_awaits,
             deferrable=service.deferrable,
-            capacity=delivery.pending_bundles,
+            capacity=delivery.pending_bundles if self._lossless else _least(delivery.pending_bundles, service),
             newest_wins=not self._lossless,
             deadline_ns=deadline_ns,
         )
@@ -117,6 +121,8 @@ class FrameLoop:
             self._answer(Sent(raw.envelope, ()))
 
     def _process(self, bundle: Bundle) -> None:
+        held = self._synchronizer.pending_times_ns() | self._subscription.frame_times_ns()
+        self.metrics.at_most("frames_held", len(held | {bundle.timestamp_ns}))
         started = time.perf_counter()
         ending = bundle.get(topics.END) is not None
         outgoing = self._service.finish(bundle) if ending else self._service.process(bundle)

@@ -68,6 +68,10 @@ class Synchronizer:
         """Incomplete frames held."""
         return len(self._pending)
 
+    def pending_times_ns(self) -> set[int]:
+        """Their capture times."""
+        return set(self._pending)
+
     def add(self, message: Message, now_ns: int) -> RawBundle | None:
         """Take one message; give back its frame's bundle if that completes it.
 

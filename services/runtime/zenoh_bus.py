@@ -54,6 +54,7 @@ class ZenohSubscription:
         self._queue = queue
         self._subscribers = subscribers
         self.receive = queue.receive
+        self.frame_times_ns = queue.frame_times_ns
         self.drop_counts = queue.drop_counts
 
     def close(self) -> None:

@@ -67,6 +67,8 @@ class SegmenterService(FrameService):
 
     name: ClassVar[str] = NAME
     awaits: ClassVar[tuple[Topic, ...]] = (topics.IMAGE, topics.TRUE_INSTANCES)
+    most_pending: ClassVar[int | None] = 2
+    """The camera sends what belongs to a frame in one go: one may be incomplete while the next begins."""
 
     def __init__(self, config: Config) -> None:
         self._backend = choose_backend(config)
