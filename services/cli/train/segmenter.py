@@ -21,7 +21,7 @@ MODEL_NAME, CURVES_NAME = "model.safetensors", "curves.png"
 _MULTIPLE_PX = 32
 _CATEGORIES = ("person", "bicycle", "car", "motorcycle", "bus", "train", "truck")
 """What a drive meets."""
-_SIZES = ("448x224", "352x288", "512x192")
+_SIZES = ("832x256", "832x448", "608x448")
 
 
 def segmenter(
@@ -52,7 +52,10 @@ def segmenter(
         list[str] | None,
         typer.Option(
             metavar="WIDTHxHEIGHT",
-            help=f"Of a training image, multiples of 32; of several each batch has one (default: {', '.join(_SIZES)}).",
+            help=(
+                "Of a training image, multiples of 32; of several, a batch has the one most like its images "
+                f"(default: {', '.join(_SIZES)})."
+            ),
         ),
     ] = None,
     steps: Annotated[int, typer.Option(min=1, help="Batches to learn from; may be more when it goes on.")] = 20_000,

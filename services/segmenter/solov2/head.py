@@ -14,7 +14,7 @@ from services.segmenter.solov2.variants import GRIDS, Variant
 
 
 class HeadOutput(NamedTuple):
-    """What the network says of N images; S runs over the grids."""
+    """What the network says of N images; S runs over variants.GRIDS."""
 
     kernels: tuple[Tensor, ...]
     """(N, mask channels, S, S) each"""
@@ -36,10 +36,10 @@ class SoloV2Head(nn.Module):
         self.conv_cls = nn.Conv2d(channels, categories, 3, padding=1)
         self.conv_kernel = nn.Conv2d(channels, variant.kernel_channels, 3, padding=1)
 
-    def forward(self, levels: Sequence[Tensor], grids: Sequence[int] = GRIDS) -> HeadOutput:
-        """Five levels of the pyramid, finest first, and the cells a side of the grid over each."""
+    def forward(self, levels: Sequence[Tensor]) -> HeadOutput:
+        """Five levels of the pyramid, finest first."""
         kernels, categories = [], []
-        for features, grid in zip(_resized(levels), grids, strict=True):
+        for features, grid in zip(_resized(levels), GRIDS, strict=True):
             cells = interpolate(with_coordinates(features), size=(grid, grid), mode="bilinear", align_corners=False)
             kernels.append(self.conv_kernel(self.kernel_convs(cells)))
             categories.append(self.conv_cls(self.cls_convs(cells[:, :-2])))

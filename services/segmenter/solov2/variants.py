@@ -53,14 +53,13 @@ def _light(depth: int) -> Variant:
 
 
 def _compact() -> Variant:
-    # what the cheaper backbone saves goes into larger images, which small instances need most
     return Variant(
         "efficientnet-lite0",
         2,
         128,
         64,
         _LIGHT_RANGES,
-        (1024, 512),
+        (852, 448),
         pyramid_channels=96,
         branch_channels=64,
         least_area=0.25,

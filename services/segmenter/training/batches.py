@@ -14,11 +14,12 @@ from torch.utils.data import DataLoader, Dataset, Sampler
 from services.segmenter.solov2.preprocessing import normalized
 from services.segmenter.solov2.variants import Variant
 from services.segmenter.training.copy_paste import CopyPaste
-from services.segmenter.training.geometric_augmentation import Mirror, RandomSection
+from services.segmenter.training.geometric_augmentation import Mirror, RandomScale
 from services.segmenter.training.losses import BatchTargets
 from services.segmenter.training.photometric_augmentation import Photometric
 from services.segmenter.training.sample import Sample, Samples
-from services.segmenter.training.targets import Targets, assign, grids_of
+from services.segmenter.training.sample_order import SampleOrder
+from services.segmenter.training.targets import Targets, assign
 
 
 class Batch(NamedTuple):
@@ -45,18 +46,17 @@ class Augmentation(Protocol):
 
 @dataclass(frozen=True)
 class Augmentations:
-    """All that makes one sample many. `box` (width, height): what images are fitted into in use."""
+    """All that makes one sample many."""
 
-    box: tuple[int, int]
     copy_paste: CopyPaste = field(default_factory=CopyPaste)
     mirror: Mirror = field(default_factory=Mirror)
     photometric: Photometric = field(default_factory=Photometric)
 
     def apply(self, sample: Sample, draw: Callable[[], Sample], size: tuple[int, int], random: Generator) -> Sample:
-        """A section, with instances of a section of another sample."""
-        section = RandomSection(size, self.box)
-        sample = section(self.mirror(sample, random), random)
-        sample = self.copy_paste.paste(sample, lambda: section(draw(), random), random)
+        """The sample in `size`, with instances of another one."""
+        scale = RandomScale(size)
+        sample = scale(self.mirror(sample, random), random)
+        sample = self.copy_paste.paste(sample, lambda: scale(draw(), random), random)
         return self.photometric(sample, random)
 
 
@@ -64,7 +64,7 @@ class Draw(NamedTuple):
     """One place in a batch: numbers, so that the same draw gives the same bytes in any worker process."""
 
     step: int
-    number: int
+    place: int
 
 
 class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
@@ -72,28 +72,17 @@ class _AugmentedSamples(Dataset[tuple[Tensor, Targets]]):
         self._samples = samples
         self._augmentation = augmentation
         self._variant = variant
-        self._sizes = options.sizes
         self._seed = options.seed
-        # kept, since of a large data set it takes milliseconds to draw; plain, so that workers can be sent it
-        self._epoch, self._order = -1, np.zeros(0, np.int64)
-
-    def _number_of(self, draw: int) -> int:
-        """Every epoch in another order, each sample once in it."""
-        epoch, place = divmod(draw, len(self._samples))
-        if epoch != self._epoch:
-            self._epoch = epoch
-            self._order = np.random.default_rng((self._seed, epoch, 0)).permutation(len(self._samples))
-        return int(self._order[place])
+        aspects = np.array([samples.aspect(number) for number in range(len(samples))])
+        self._order = SampleOrder(aspects, options.sizes, options.batch, options.seed)
 
     def __getitem__(self, draw: Draw) -> tuple[Tensor, Targets]:
-        # a batch has one size
-        size = self._sizes[int(np.random.default_rng((self._seed, draw.step, 1)).integers(len(self._sizes)))]
-        random = np.random.default_rng((self._seed, draw.number))
-        sample = self._samples[self._number_of(draw.number)]
+        numbers, size = self._order.batch(draw.step)
+        random = np.random.default_rng((self._seed, draw.step, draw.place))
+        sample = self._samples[numbers[draw.place]]
         other = int(random.integers(len(self._samples)))
         sample = self._augmentation.apply(sample, lambda: self._samples[other], size, random)
-        targets = assign(sample, self._variant, grids_of(size[0], self._variant))
-        return torch.from_numpy(normalized(sample.image)), targets
+        return torch.from_numpy(normalized(sample.image)), assign(sample, self._variant)
 
 
 class _Draws(Sampler[list[Draw]]):
@@ -108,7 +97,7 @@ class _Draws(Sampler[list[Draw]]):
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         for step in self._steps:
-            yield [Draw(step, number) for number in range(step * self._batch, (step + 1) * self._batch)]
+            yield [Draw(step, place) for place in range(self._batch)]
 
 
 def _collate(items: Sequence[tuple[Tensor, Targets]]) -> Batch:
@@ -128,7 +117,7 @@ class BatchOptions:
     batch: int
     steps: tuple[int, int]
     sizes: Sequence[tuple[int, int]]
-    """(width, height) in multiples of 32; each batch has one of them"""
+    """(width, height) in multiples of 32; each batch has one of those that are most like its images"""
     seed: int = 0
     workers: int = 0
 

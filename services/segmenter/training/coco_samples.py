@@ -61,6 +61,10 @@ class CocoSamples:
         labels = np.array([self._label_of[instance.category_id] for instance in instances], np.int64)
         return Sample(np.asarray(pixels, np.uint8), masks, labels)
 
+    def aspect(self, index: int, /) -> float:
+        """Width by height, as the annotations say."""
+        return self._images[index].width / self._images[index].height
+
 
 class JoinedSamples:
     """Several sources, one after the other."""
@@ -73,5 +77,14 @@ class JoinedSamples:
         return int(self._ends[-1])
 
     def __getitem__(self, index: int, /) -> Sample:
+        part, own_index = self._place(index)
+        return part[own_index]
+
+    def aspect(self, index: int, /) -> float:
+        """Width by height."""
+        part, own_index = self._place(index)
+        return part.aspect(own_index)
+
+    def _place(self, index: int) -> tuple[CocoSamples, int]:
         part = int(np.searchsorted(self._ends, index, side="right"))
-        return self._parts[part][index - (int(self._ends[part - 1]) if part else 0)]
+        return self._parts[part], index - (int(self._ends[part - 1]) if part else 0)

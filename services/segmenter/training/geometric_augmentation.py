@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.segmenter.solov2.preprocessing import fitted_hw
 from services.segmenter.training.sample import Sample
 
 
@@ -54,29 +53,27 @@ def _turned_masks(masks: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
 
 
 @dataclass(frozen=True)
-class RandomSection:
-    """Takes a section of the image, scaled about as it is in use, its aspect changed; black beyond the border.
+class RandomScale:
+    """Scales the image about as it fits, changes its aspect, cuts off what is too much; black beyond the border.
 
-    A section is cheaper than the whole image and shows things in the size that they have in use; small scales show
-    whole what is large.
+    Nearly all of the image stays: the network knows by its coordinates where in the image something is, and what was
+    learned on small sections of images does not hold on whole ones.
     """
 
     size: tuple[int, int]
     """(width, height) of what comes out"""
-    box: tuple[int, int]
-    """(width, height) that images are fitted into in use"""
-    scales: tuple[float, float] = (0.45, 1.4)
-    """of the size in use"""
+    scales: tuple[float, float] = (0.8, 1.5)
+    """of the scale at which the image just fits"""
     aspect: float = 0.15
     """how far width and height may differ in scale"""
     around_instance: float = 0.7
-    """share of the sections that show a certain instance, if there is one"""
+    """share of the cuts that show a certain instance, if there is one"""
     least_px: int = 16
     """instances of fewer pixels are left out: nothing can be learned of them"""
 
     def __call__(self, sample: Sample, random: np.random.Generator) -> Sample:
         height, width = sample.image.shape[:2]
-        factor = fitted_hw(height, width, self.box)[1] / width * np.exp(random.uniform(*np.log(self.scales)))
+        factor = min(self.size[0] / width, self.size[1] / height) * np.exp(random.uniform(*np.log(self.scales)))
         stretch = np.exp(random.uniform(-self.aspect, self.aspect) / 2)
         factors = (factor * stretch, factor / stretch)
         shown = [min(of, round(new / by)) for of, new, by in zip((width, height), self.size, factors, strict=True)]

@@ -49,11 +49,6 @@ class BatchTargets:
     masks: tuple[Tensor, ...]
     """(M, H / 4, W / 4) an image"""
 
-    @property
-    def grids(self) -> tuple[int, ...]:
-        """Cells a side."""
-        return tuple(grid.shape[-1] for grid in self.categories)
-
 
 @dataclass(frozen=True)
 class Loss:

@@ -32,3 +32,6 @@ class Samples(Protocol):
 
     def __getitem__(self, index: int, /) -> Sample:
         """Raises InputError when what the sample is made of cannot be read."""
+
+    def aspect(self, index: int, /) -> float:
+        """Width by height of the sample's image, without reading it."""

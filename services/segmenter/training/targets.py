@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each cell of each grid shall answer (SOLO, Wang et al., ECCV 2020, section 3.3; kept by SOLOv2)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -21,12 +20,6 @@ _REACH = 1
 NOBODY = -1
 
 
-def grids_of(width: int, variant: Variant) -> tuple[int, ...]:
-    """The grids for images of `width`: in sections of larger ones, cells keep the width that they have in use."""
-    share = min(1.0, width / variant.test_size[0])
-    return tuple(max(1, round(grid * share)) for grid in GRIDS)
-
-
 @dataclass(frozen=True)
 class Targets:
     """Of one image."""
@@ -39,7 +32,7 @@ class Targets:
     """(M, H / 4, W / 4) in the size of the mask features: the share of an element that is the instance's"""
 
 
-def assign(sample: Sample, variant: Variant, grids: Sequence[int] = GRIDS) -> Targets:
+def assign(sample: Sample, variant: Variant) -> Targets:
     """Targets of a sample that has the size of the network's input (multiples of 32).
 
     An instance belongs to the levels whose range its size falls in; there the cells in the middle of it, around its
@@ -47,8 +40,8 @@ def assign(sample: Sample, variant: Variant, grids: Sequence[int] = GRIDS) -> Ta
     half of an element of the mask features nobody answers.
     """
     height, width = sample.image.shape[:2]
-    categories = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in grids)
-    instances = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in grids)
+    categories = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in GRIDS)
+    instances = tuple(np.full((grid, grid), NOBODY, np.int64) for grid in GRIDS)
     masks = _reduced(sample.masks)
     largest_first = np.argsort(-sample.masks.sum((1, 2), dtype=np.int64), kind="stable")
     for number in largest_first.tolist():
@@ -60,7 +53,7 @@ def assign(sample: Sample, variant: Variant, grids: Sequence[int] = GRIDS) -> Ta
         center = (x + moments["m10"] / moments["m00"], y + moments["m01"] / moments["m00"])
         half = (0.5 * _CENTER_SHARE * box_width, 0.5 * _CENTER_SHARE * box_height)
         size_px = float(np.sqrt(box_width * box_height))
-        for level, (grid, (least, most)) in enumerate(zip(grids, variant.scale_ranges_px, strict=True)):
+        for level, (grid, (least, most)) in enumerate(zip(GRIDS, variant.scale_ranges_px, strict=True)):
             if not least <= size_px <= most:
                 continue
             columns = _cells(center[0], half[0], width, grid)

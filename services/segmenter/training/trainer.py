@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The loop: batches in, a network out, resumable at every save."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -41,7 +41,7 @@ class TrainingOptions:
     variant: str = "solov2-compact_lite0"
     categories: tuple[str, ...] = ()
     sizes: tuple[tuple[int, int], ...] = ((448, 224),)
-    """(width, height) of a training image, multiples of 32: each batch has one of them"""
+    """(width, height) of a training image, multiples of 32: each batch has the one that is most like its images"""
     steps: int = 20_000
     batch: int = 16
     peak_learning_rate: float = 4e-4
@@ -130,7 +130,7 @@ class Trainer:
         variant = VARIANTS[self.options.variant]
         steps = (self.step, until)
         options = BatchOptions(self.options.batch, steps, self.options.sizes, self.options.seed, self.workers)
-        yield from batches(self.samples, self.augmentation or Augmentations(variant.test_size), variant, options)
+        yield from batches(self.samples, self.augmentation or Augmentations(), variant, options)
 
     def _train(self, batch: Batch) -> StepReport:
         options = self.options
@@ -146,7 +146,7 @@ class Trainer:
         self._optimizer.zero_grad(set_to_none=True)
         images = batch.images.contiguous(memory_format=torch.channels_last)
         with torch.autocast(self.device.type, self._dtype, enabled=self._dtype != torch.float32):
-            output = self._output(images, batch.targets.grids)
+            output = self._output(images)
             loss = segmentation_loss(output, batch.targets)
         self._scaler.scale(loss.total).backward()  # type: ignore[no-untyped-call]
         self._scaler.unscale_(self._optimizer)
@@ -157,14 +157,14 @@ class Trainer:
         self.step += 1
         return StepReport(self.step, loss.category.item(), loss.mask.item(), rate)
 
-    def _output(self, images: torch.Tensor, grids: Sequence[int]) -> HeadOutput:
+    def _output(self, images: torch.Tensor) -> HeadOutput:
         # the gradient of convolutions of one filter a channel takes twice as long in bfloat16 on a CPU
         slow_in_16_bits = self.device.type == "cpu" and isinstance(self._network.backbone, EfficientNetLite)
         with torch.autocast(
             self.device.type, self._dtype, enabled=torch.is_autocast_enabled(self.device.type) and not slow_in_16_bits
         ):
             maps = self._network.backbone(images)
-        output: HeadOutput = self._network.from_maps(maps, grids)
+        output: HeadOutput = self._network.from_maps(maps)
         return output
 
     def _state(self) -> TrainingState:

@@ -21,10 +21,8 @@ from services.formats.rle import encode_mask
 from services.segmenter.solov2.instances import InstanceOptions, instances_of
 from services.segmenter.solov2.network import SoloV2
 from services.segmenter.solov2.preprocessing import normalized
-from services.segmenter.solov2.variants import VARIANTS
-from services.segmenter.training.geometric_augmentation import RandomSection
+from services.segmenter.training.geometric_augmentation import RandomScale
 from services.segmenter.training.sample import Sample
-from services.segmenter.training.targets import grids_of
 from services.segmenter.training.trainer import Trainer, TrainingOptions
 
 _LEAST_PX = 400
@@ -32,7 +30,7 @@ _LEAST_PX = 400
 
 
 class _Few:
-    """Sections that stay the same."""
+    """Images that stay the same."""
 
     def __init__(self, samples: list[Sample]) -> None:
         self._samples = samples
@@ -43,19 +41,24 @@ class _Few:
     def __getitem__(self, index: int, /) -> Sample:
         return self._samples[index]
 
+    def aspect(self, index: int, /) -> float:
+        height, width = self._samples[index].image.shape[:2]
+        return width / height
+
 
 class _Unchanged:
     def apply(self, sample: Sample, *_: object) -> Sample:
         return sample
 
 
-def _sections(folders: list[str], count: int, size: tuple[int, int], box: tuple[int, int]) -> list[Sample]:
+def _images(folders: list[str], count: int, size: tuple[int, int]) -> list[Sample]:
+    """Whole images, fitted into `size`."""
     samples = read_samples([parse_training_data(folder) for folder in folders], _categories())
     random = np.random.default_rng(0)
-    section = RandomSection(size, box, least_px=_LEAST_PX)
+    fit = RandomScale(size, scales=(1.0, 1.0), aspect=0.0, least_px=_LEAST_PX)
     found: list[Sample] = []
     for number in random.permutation(len(samples)):
-        sample = section(samples[int(number)], random)
+        sample = fit(samples[int(number)], random)
         if len(sample.labels) and len(found) < count:
             found.append(sample)
     return found
@@ -82,7 +85,7 @@ def _found(network: SoloV2, samples: list[Sample]) -> list[CocoResult]:
     results = []
     for number, sample in enumerate(samples, start=1):
         size = (sample.image.shape[0], sample.image.shape[1])
-        output = network(torch.from_numpy(normalized(sample.image))[None], grids_of(size[1], network.variant))
+        output = network(torch.from_numpy(normalized(sample.image))[None])
         instances = instances_of(output, size, size, InstanceOptions(least_area=network.variant.least_area))
         for mask, label, score in zip(instances.masks, instances.labels, instances.scores, strict=True):
             results.append(CocoResult(number, int(label) + 1, encode_mask(mask.numpy()), float(score)))
@@ -100,8 +103,8 @@ def main() -> None:
     parser.add_argument("--precision", default="auto")
     arguments = parser.parse_args()
     torch.set_num_threads(1)
-    size = (256, 160)
-    samples = _sections(arguments.folders, arguments.images, size, VARIANTS[arguments.variant].test_size)
+    size = (416, 224)
+    samples = _images(arguments.folders, arguments.images, size)
     truth = _truth(samples)
     asked = sorted({item.category_id for item in truth.annotations})
     print(f"{len(samples)} images, {len(truth.annotations)} instances", flush=True)

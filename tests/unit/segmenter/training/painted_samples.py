@@ -35,3 +35,6 @@ class PaintedSamples:
 
     def __getitem__(self, index: int, /) -> Sample:
         return painted_sample(index)
+
+    def aspect(self, index: int, /) -> float:
+        return 160 / 96

@@ -5,7 +5,7 @@ from torch.nn.functional import interpolate
 
 from services.segmenter.solov2.variants import GRIDS, VARIANTS
 from services.segmenter.training.sample import Sample
-from services.segmenter.training.targets import NOBODY, assign, grids_of
+from services.segmenter.training.targets import NOBODY, assign
 
 LIGHT = VARIANTS["solov2-light_r18"]
 
@@ -63,15 +63,6 @@ def test_no_instance_no_answer() -> None:
     assert all((grid == NOBODY).all() for grid in targets.categories)
     assert [grid.shape for grid in targets.categories] == [(grid, grid) for grid in GRIDS]
     assert targets.masks.shape == (0, 40, 80)
-
-
-def test_cells_of_a_section_are_as_wide_as_those_of_the_whole_image() -> None:
-    assert grids_of(LIGHT.test_size[0], LIGHT) == GRIDS
-    assert grids_of(2000, LIGHT) == GRIDS
-    half = grids_of(LIGHT.test_size[0] // 2, LIGHT)
-    assert half == (20, 18, 12, 8, 6)
-    targets = assign(_sample((100, 60, 60, 40, 3)), LIGHT, half)
-    assert [grid.shape for grid in targets.categories] == [(grid, grid) for grid in half]
 
 
 def test_nobody_answers_for_what_the_mask_features_cannot_show() -> None:
