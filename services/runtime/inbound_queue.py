@@ -6,6 +6,7 @@ from collections import Counter, deque
 
 from schemas.topics import WhenFull
 from services.runtime.bus import Message
+from services.runtime.envelope import Envelope
 
 
 class InboundQueue:
@@ -19,7 +20,7 @@ class InboundQueue:
         self._keep_all = keep_all
         self._messages: deque[Message] = deque()
         self._waiting: Counter[str] = Counter()
-        self._of_frames: Counter[tuple[str, int]] = Counter()
+        self._of_frames: Counter[tuple[str, Envelope]] = Counter()
         self._drops: Counter[str] = Counter()
         self._arrived = threading.Condition()
         self._closed = False
@@ -60,7 +61,7 @@ class InboundQueue:
     def frame_times_ns(self) -> set[int]:
         """The frames that something waits of."""
         with self._arrived:
-            return {time_ns for _, time_ns in self._of_frames}
+            return {envelope.timestamp_ns for _, envelope in self._of_frames}
 
     def drop_counts(self) -> dict[str, int]:
         """Drops so far, by topic."""
@@ -81,5 +82,5 @@ class InboundQueue:
             del self._of_frames[frame]
 
 
-def _frame_of(message: Message) -> tuple[str, int]:
-    return message.topic.key, message.envelope.timestamp_ns
+def _frame_of(message: Message) -> tuple[str, Envelope]:
+    return message.topic.key, message.envelope

@@ -27,11 +27,12 @@ class SampleOrder:
     ) -> None:
         self._batch, self._seed = batch, seed
         of_sizes = np.log([width / height for width, height in sizes])
-        nearest = np.abs(np.log(aspects)[:, None] - of_sizes).argmin(1)
+        alike = np.abs(of_sizes[:, None] - of_sizes) <= _ALIKE
+        # sizes of about one aspect are one choice
+        nearest = alike.argmax(1)[np.abs(np.log(aspects)[:, None] - of_sizes).argmin(1)]
         self._samples_of = {int(size): np.flatnonzero(nearest == size) for size in np.unique(nearest)}
         self._sizes_of = {
-            size: [sizes[int(other)] for other in np.flatnonzero(np.abs(of_sizes - of_sizes[size]) <= _ALIKE)]
-            for size in self._samples_of
+            size: [sizes[int(other)] for other in np.flatnonzero(alike[size])] for size in self._samples_of
         }
         self._batches_an_epoch = sum(-(-len(samples) // batch) for samples in self._samples_of.values())
         # kept, since of a large data set it takes milliseconds to draw; plain, so that workers can be sent it

@@ -4,7 +4,7 @@ import pytest
 
 from services.segmenter.training.batches import Augmentations
 from services.segmenter.training.copy_paste import CopyPaste
-from services.segmenter.training.geometric_augmentation import Mirror, RandomScale
+from services.segmenter.training.geometric_augmentation import Mirror, RandomScale, resized
 from services.segmenter.training.photometric_augmentation import Photometric
 from services.segmenter.training.sample import Sample
 from tests.unit.segmenter.training.painted_samples import BLUE, RED, painted_sample
@@ -60,12 +60,20 @@ def test_the_same_chance_gives_the_same_bytes() -> None:
     np.testing.assert_array_equal(one.masks, two.masks)
 
 
-def test_most_sections_show_an_instance() -> None:
+def test_most_cuts_show_an_instance() -> None:
     random = np.random.default_rng(1)
     image = np.full((400, 800, 3), 90, np.uint8)
     mask = np.zeros((1, 400, 800), np.uint8)
     mask[0, 300:330, 700:740] = 1
     sample = Sample(image, mask, np.zeros(1, np.int64))
-    section = RandomScale((160, 96), (800, 400), scales=(0.9, 1.1))
-    shown = [len(section(sample, random).labels) for _ in range(200)]
+    scale = RandomScale((160, 96), scales=(4.5, 5.5))
+    shown = [len(scale(sample, random).labels) for _ in range(200)]
     assert 0.65 < np.mean(shown) < 0.9
+
+
+def test_an_image_that_just_fits_is_shown_whole() -> None:
+    sample = painted_sample(2, (200, 120))
+    shown = RandomScale((100, 96), scales=(1.0, 1.0), aspect=0.0)(sample, np.random.default_rng(0))
+    assert shown.image.shape == (96, 100, 3)
+    assert not shown.image[60:].any()
+    np.testing.assert_array_equal(shown.image[:60], resized(sample, 100, 60).image)
