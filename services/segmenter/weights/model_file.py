@@ -2,6 +2,7 @@
 """A model of ours in one safetensors file: tensors, and in its metadata what they are. Nothing in it can run code."""
 
 import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -51,9 +52,17 @@ def save_model(path: Path, description: ModelDescription, state: dict[str, Tenso
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         save_file(tensors, part, metadata)
+        _make_readable(part)
         part.replace(path)
     except (OSError, SafetensorError) as error:
         raise ResourceError(f"{path}: cannot be written ({error})") from error
+
+
+def _make_readable(path: Path) -> None:
+    """As any new file: safetensors makes its own for the user alone."""
+    mask = os.umask(0)
+    os.umask(mask)
+    path.chmod(0o666 & ~mask)
 
 
 def _stored(value: Tensor, half: bool) -> Tensor:

@@ -6,6 +6,7 @@
 #include "features/frame_features.h"
 #include "features/object_labels.h"
 #include "geometry/rigid_transform.h"
+#include "map/id_set.h"
 #include "map/ids.h"
 
 namespace kinemap {
@@ -23,6 +24,13 @@ struct Frame {
   int size() const { return features->size(); }
   bool IsFree(int keypoint) const {
     return landmark_ids[keypoint] == kNoId && labels[keypoint].role == FeatureRole::kTracked;
+  }
+  IdSet MatchedLandmarks() const {
+    IdSet matched;
+    for (const LandmarkId id : landmark_ids) {
+      if (id != kNoId) matched.Insert(id);
+    }
+    return matched;
   }
   void ForgetMatches() { landmark_ids.assign(features->size(), kNoId); }
 };

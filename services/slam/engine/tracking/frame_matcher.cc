@@ -3,7 +3,6 @@
 
 #include "features/brute_force_matcher.h"
 #include "features/rotation_consistency.h"
-#include "map/id_set.h"
 #include "map/landmark_search.h"
 
 namespace kinemap {
@@ -56,10 +55,7 @@ int MatchKeyframe(const SlamMap& map, KeyframeId keyframe_id, double ratio, Fram
 
 int ProjectKeyframe(const SlamMap& map, const CameraModel& camera, KeyframeId keyframe_id, double radius_px,
                     int max_distance, Frame* frame) {
-  IdSet already;
-  for (const LandmarkId id : frame->landmark_ids) {
-    if (id != kNoId) already.Insert(id);
-  }
+  const IdSet already = frame->MatchedLandmarks();
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
   int added = 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/landmark_projection.h"
 
-#include "map/id_set.h"
 #include "map/landmark_search.h"
 
 namespace kinemap {
@@ -13,10 +12,7 @@ constexpr double kRatio = 0.9;
 
 int ProjectLandmarks(const SlamMap& map, const CameraModel& camera, const std::vector<LandmarkId>& landmarks,
                      double radius_px, int max_distance, Frame* frame) {
-  IdSet already;
-  for (const LandmarkId id : frame->landmark_ids) {
-    if (id != kNoId) already.Insert(id);
-  }
+  const IdSet already = frame->MatchedLandmarks();
   const Eigen::Vector3d center = frame->camera_from_map.Inverse().translation;
   KeypointSearch search;
   int added = 0;
