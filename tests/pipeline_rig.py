@@ -38,11 +38,12 @@ SHORT_STREET: dict[str, Any] = {"seed": 3, "width": 480, "height": 144, "empty_s
 
 
 def run_config(out: Path, source: str = "simulator", **sections: dict[str, Any]) -> Config:
-    """A run of `source` that writes to `out` and serves no HTTP."""
+    """A run of `source` that writes to `out` and serves no HTTP; the simulator's masks are the true ones."""
+    segmenter = {"backend": "truth" if source == "simulator" else "auto", **sections.pop("segmenter", {})}
     mapstore = {"serve_http": False, **sections.pop("mapstore", {})}
     camera = {"input": source, **sections.pop("camera", {})}
     run = {"out": str(out), "session": "test"}
-    return load_config(None, {"run": run, "camera": camera, "mapstore": mapstore, **sections})
+    return load_config(None, {"run": run, "camera": camera, "mapstore": mapstore, "segmenter": segmenter, **sections})
 
 
 def short_drive(out: Path, **sections: dict[str, Any]) -> Config:

@@ -29,7 +29,7 @@ class InboundQueue:
         """Add a message; where its topic's queue is full, its oldest goes."""
         key = message.topic.key
         with self._arrived:
-            if self._closed or (message.topic.per_frame and _frame_of(message) in self._of_frames):
+            if self._closed or self._waits_already(message):
                 return
             bounded = not self._keep_all and message.topic.when_full is WhenFull.DROP_OLDEST
             if bounded and self._waiting[key] >= message.topic.queue_depth:
@@ -73,6 +73,13 @@ class InboundQueue:
         with self._arrived:
             self._closed = True
             self._arrived.notify_all()
+
+    def _waits_already(self, message: Message) -> bool:
+        return (
+            message.topic.per_frame
+            and _frame_of(message) in self._of_frames
+            and any(waiting == message for waiting in self._messages)
+        )
 
     def _left(self, message: Message) -> None:
         self._waiting[message.topic.key] -= 1

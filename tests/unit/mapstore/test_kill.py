@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from services.mapstore.export import export_map, load_view
+from services.runtime.config.delivery import DeliveryConfig
 from tests.unit.mapstore.mapstore_process import FedMapstore, config_of
 
 FRAMES = 17
@@ -51,4 +52,6 @@ def test_a_killed_mapstore_ends_with_the_same_bytes(
     assert files == undisturbed[1]
     lost = set(undisturbed[0]) - set(densities)
     assert all(densities[sequence] == undisturbed[0][sequence] for sequence in densities)
-    assert lost <= set(range(view.sequence - 2 * 8 + 1)), "densities of the last frames are sent again"
+    assert lost <= set(range(view.sequence - 2 * DeliveryConfig().window + 1)), (
+        "densities of the last frames are sent again"
+    )

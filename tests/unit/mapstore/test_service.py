@@ -33,14 +33,14 @@ def test_every_frame_is_answered_with_the_density_at_its_pose(tmp_path: Path) ->
 def test_a_repeated_frame_is_answered_and_not_put_again(tmp_path: Path) -> None:
     fed = FedMapstore(config_of(tmp_path, serve_http=False))
     first = fed.feed(9)
+    again = []
     for sequence in (7, 8, 8):
         fed.send(sequence)
-    while fed.loop.step(0.0):
-        pass
-    again = []
-    while (message := fed.heard.receive(0.0)) is not None:
-        if message.topic is topics.DENSITY:
-            again.append((message.envelope.sequence, message.payload))
+        while fed.loop.step(0.0):
+            pass
+        while (message := fed.heard.receive(0.0)) is not None:
+            if message.topic is topics.DENSITY:
+                again.append((message.envelope.sequence, message.payload))
     assert again == [(sequence, first[sequence]) for sequence in (7, 8, 8)]
     fed.close()
     assert len(load_view(tmp_path / "map.sqlite").frames.sequence) == 9

@@ -6,8 +6,8 @@ from services.runtime.envelope import Envelope
 from services.runtime.inbound_queue import InboundQueue
 
 
-def _message(topic: Topic, frame: int, suffix: str = "") -> Message:
-    return Message(topic, Envelope("test", frame, 1000 + frame), b"payload", suffix)
+def _message(topic: Topic, frame: int, suffix: str = "", payload: bytes = b"payload") -> Message:
+    return Message(topic, Envelope("test", frame, 1000 + frame), payload, suffix)
 
 
 def _frames(queue: InboundQueue) -> list[int]:
@@ -33,6 +33,13 @@ def test_once_taken_it_is_heard_again() -> None:
     for _ in range(2):
         queue.put(_message(topics.IMAGE, 7))
         assert _frames(queue) == [7]
+
+
+def test_a_broken_message_does_not_stand_for_the_whole_one() -> None:
+    queue = InboundQueue(keep_all=True)
+    queue.put(_message(topics.IMAGE, 3, payload=b"pay"))
+    queue.put(_message(topics.IMAGE, 3))
+    assert _frames(queue) == [3, 3]
 
 
 def test_answers_of_several_services_to_one_frame_are_all_kept() -> None:

@@ -20,14 +20,10 @@ from services.segmenter.configured_network import configured_network
 from services.segmenter.network_instances import NetworkInstances
 from services.segmenter.service import SegmenterService, choose_backend
 from services.segmenter.solov2.instances import SegmentedInstances
-from services.segmenter.solov2.network import SoloV2
-from services.segmenter.solov2.variants import VARIANTS
 from services.segmenter.truth import TrueLabels
 from services.segmenter.weights import choice
 from services.segmenter.weights.choice import choose_model
-from services.segmenter.weights.model_file import ModelDescription, save_model
-
-CATEGORIES = ("person", "car", "chair")
+from tests.unit.segmenter.drawn_model import CATEGORIES, save_drawn_model
 
 
 class _Found:
@@ -38,14 +34,6 @@ class _Found:
         for number, (first, last) in enumerate(((0, 4), (2, 8), (6, 10), (9, 14))):
             masks[number, 0, first:last] = True
         return SegmentedInstances(masks, torch.tensor([2, 1, 0, 1]), torch.tensor([0.9, 0.8, 0.5, 0.1]))
-
-
-def _save(path: Path, categories: tuple[str, ...] = CATEGORIES) -> Path:
-    torch.manual_seed(3)
-    variant = VARIANTS["solov2-light_r18"]
-    description = ModelDescription("solov2-light_r18", categories, (96, 64), "a test")
-    save_model(path, description, SoloV2(variant, len(categories)).state_dict(), half=True)
-    return path
 
 
 @pytest.fixture(autouse=True)
@@ -77,15 +65,15 @@ def test_any_category_can_be_asked_for(image: Image) -> None:
 def test_configured_file_then_public_models_then_what_is_shipped(cache: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no network for the segmenter.*kinemap weights pull solov2-light_r18"):
         choose_model(None)
-    shipped = _save(tmp_path / "default.safetensors")
+    shipped = save_drawn_model(tmp_path / "default.safetensors")
     assert choose_model(None).path == shipped
-    public = _save(cache / "solov2_r50_fpn_1x_coco.safetensors")
+    public = save_drawn_model(cache / "solov2_r50_fpn_1x_coco.safetensors")
     assert choose_model(None).path == public
-    light = _save(cache / "solov2-light_r34_fpn_ms-3x_coco.safetensors")
+    light = save_drawn_model(cache / "solov2-light_r34_fpn_ms-3x_coco.safetensors")
     assert choose_model(None).path == light
     assert choose_model("solov2_r50_fpn_1x_coco").path == public
     assert choose_model(str(shipped)).path == shipped
-    own = _save(cache / "mine.safetensors")
+    own = save_drawn_model(cache / "mine.safetensors")
     assert choose_model("mine").path == own
     with pytest.raises(InputError, match=r"solov2_r101: not in .*`kinemap weights pull solov2_r101_fpn_ms-3x_coco`"):
         choose_model("solov2_r101")
@@ -98,12 +86,12 @@ def test_configured_file_then_public_models_then_what_is_shipped(cache: Path, tm
 def test_auto_takes_the_network_where_there_is_one(tmp_path: Path) -> None:
     config = Config()
     assert isinstance(choose_backend(config), TrueLabels)
-    _save(tmp_path / "default.safetensors")
+    save_drawn_model(tmp_path / "default.safetensors")
     assert isinstance(choose_backend(config), NetworkInstances)
 
 
 def test_categories_that_it_does_not_know_are_named(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    weights = str(_save(tmp_path / "mine.safetensors"))
+    weights = str(save_drawn_model(tmp_path / "mine.safetensors"))
     chosen = InstanceFilter(frozenset({"dog"}))
     with pytest.raises(InputError, match=r"mine\.safetensors knows none of dog, only person, car, chair"):
         configured_network(SegmenterConfig(weights=weights, categories=("dog",)), chosen)
@@ -116,7 +104,7 @@ def test_the_service_segments_every_nth_frame_and_says_of_the_others_that_it_ski
     config = Config()
     config.segmenter = SegmenterConfig(
         backend="solov2",
-        weights=str(_save(tmp_path / "mine.safetensors")),
+        weights=str(save_drawn_model(tmp_path / "mine.safetensors")),
         every=3,
         min_score=0,
         runtime="torch",
@@ -137,7 +125,7 @@ def test_the_service_segments_every_nth_frame_and_says_of_the_others_that_it_ski
 
 def test_sixteen_bits_see_the_same(tmp_path: Path) -> None:
     pixels = np.random.default_rng(1).integers(0, 255, (64, 96, 3), np.uint8)
-    weights = str(_save(tmp_path / "mine.safetensors"))
+    weights = str(save_drawn_model(tmp_path / "mine.safetensors"))
     found = []
     for precision in ("fp32", "bf16"):
         settings = SegmenterConfig.model_validate(

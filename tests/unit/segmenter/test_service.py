@@ -15,9 +15,12 @@ from services.runtime.envelope import Envelope
 from services.runtime.errors import InputError
 from services.runtime.service import Bundle
 from services.segmenter.label_images import LabelImages
+from services.segmenter.network_instances import NetworkInstances
 from services.segmenter.no_instances import NoInstances
 from services.segmenter.service import SegmenterService, choose_backend
 from services.segmenter.truth import TrueLabels
+from services.segmenter.weights import choice
+from tests.unit.segmenter.drawn_model import save_drawn_model
 
 
 def _config(camera_input: str = "simulator", **segmenter: object) -> Config:
@@ -54,12 +57,18 @@ def truth(image: Image) -> TrueInstances:
     return TrueInstances(image.timestamp_ns, labels, objects)
 
 
-def test_auto_takes_the_masks_beside_the_input(instances: Path, tmp_path: Path) -> None:
+def test_auto_takes_the_masks_beside_the_input_else_what_there_is(
+    instances: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(choice, "SHIPPED_WEIGHTS", tmp_path / "none.safetensors")
     assert isinstance(choose_backend(_config(str(tmp_path))), LabelImages)
     assert isinstance(choose_backend(_config("simulator")), TrueLabels)
     assert isinstance(choose_backend(_config("simulator", instances=str(instances))), LabelImages)
     assert isinstance(choose_backend(_config(str(tmp_path), backend="truth")), TrueLabels)
     assert isinstance(choose_backend(_config(str(tmp_path), backend="none")), NoInstances)
+    monkeypatch.setattr(choice, "SHIPPED_WEIGHTS", save_drawn_model(tmp_path / "shipped.safetensors"))
+    assert isinstance(choose_backend(_config("simulator", runtime="torch", precision="fp32")), NetworkInstances)
 
 
 def test_auto_takes_the_instances_of_a_session(tmp_path: Path) -> None:
@@ -90,7 +99,7 @@ def test_masks_by_frame_name(instances: Path, tmp_path: Path, image: Image) -> N
 
 
 def test_truth_of_the_configured_categories(image: Image, truth: TrueInstances) -> None:
-    service = SegmenterService(_config())
+    service = SegmenterService(_config(backend="truth"))
     found = _segment(service, _bundle(image, "000000", truth))
     assert [(item.instance_id, item.score, item.box_px) for item in found.instances] == [(70000, 1.0, (0, 0, 5, 5))]
     assert set(np.unique(found.labels)) == {0, 70000}
@@ -101,7 +110,7 @@ def test_truth_of_the_configured_categories(image: Image, truth: TrueInstances) 
 def test_truth_of_another_size_is_named(image: Image, truth: TrueInstances) -> None:
     small = TrueInstances(truth.timestamp_ns, truth.labels[:10], truth.objects)
     with pytest.raises(InputError, match="true labels of frame 000000: 30x10 px, expected 30x20"):
-        _segment(SegmenterService(_config()), _bundle(image, "000000", small))
+        _segment(SegmenterService(_config(backend="truth")), _bundle(image, "000000", small))
 
 
 def test_none_skips_all(image: Image, truth: TrueInstances) -> None:
