@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from services.motion.optical_flow import FlowField
+from services.motion.flow.dense_flow import FlowField
 from services.motion.two_view import FloatArray, PinholeCamera
 
 

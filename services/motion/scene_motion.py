@@ -18,6 +18,9 @@ from schemas.records import (
     MovingMask,
 )
 from services.motion.ego_motion import EgoMotionEstimate, EgoMotionEstimator, EgoMotionOptions
+from services.motion.flow.algorithm import Pixels
+from services.motion.flow.dense_flow import DenseFlow
+from services.motion.flow.options import OpticalFlowOptions
 from services.motion.flow_samples import FlowSamples, FlowSampling, sample_flow
 from services.motion.ground_plane import GroundOptions, GroundPlane, blend_normal, fit_ground
 from services.motion.instance_motion import (
@@ -27,7 +30,6 @@ from services.motion.instance_motion import (
     MotionEvidence,
 )
 from services.motion.mask_carrier import CarriedMasks, bounding_box, carry_masks
-from services.motion.optical_flow import DenseFlow, OpticalFlowOptions
 from services.motion.two_view import CameraMotion, FloatArray, PinholeCamera
 from services.runtime.errors import InputError
 
@@ -50,7 +52,8 @@ class SceneMotionState:
     """What one image leaves for the next."""
 
     timestamp_ns: int
-    grey: npt.NDArray[np.uint8]
+    pixels: Pixels
+    """of the image, as the flow takes them"""
     masks: CarriedMasks
     motion: CameraMotion | None
     ground_normal: FloatArray | None
@@ -81,15 +84,15 @@ class SceneMotion:
 
         Raise InputError when the label image is not of the image's size.
         """
-        grey = image.pixels if image.pixels.ndim == 2 else cv2.cvtColor(image.pixels, cv2.COLOR_BGR2GRAY)
-        grey = np.asarray(grey, dtype=np.uint8)
-        if not segmented.skipped and segmented.labels.shape != grey.shape:
-            raise InputError(f"labels of {segmented.labels.shape}: expected those of the image, {grey.shape}")
+        shape = image.pixels.shape[:2]
+        if not segmented.skipped and segmented.labels.shape != shape:
+            raise InputError(f"labels of {segmented.labels.shape}: expected those of the image, {shape}")
         before = self.state
-        if before is None or before.grey.shape != grey.shape:
-            return self._first(image, grey, segmented)
+        pixels = self._flow.kept(image.pixels)
+        if before is None or before.pixels.shape[:2] != shape:
+            return self._first(image, pixels, segmented)
 
-        field = self._flow.previous_from_current(grey, before.grey)
+        field = self._flow.previous_from_current(pixels, before.pixels)
         masks = carry_masks(before.masks, field.flow) if segmented.skipped else _fresh(segmented)
         camera = PinholeCamera(
             np.asarray(calibration.intrinsics, dtype=np.float64),
@@ -107,20 +110,20 @@ class SceneMotion:
         )
         evidence = {
             instance.instance_id: estimator.assess(
-                masks.labels, instance.instance_id, instance.category, _whole_box(instance, grey.shape)
+                masks.labels, instance.instance_id, instance.category, _whole_box(instance, shape)
             )
             for instance in masks.instances
         }
         normal = before.ground_normal
         if ground is not None:
             normal = blend_normal(normal, ground.normal, self._options.ground.normal_memory)
-        self.state = SceneMotionState(image.timestamp_ns, grey, masks, ego.motion, normal)
+        self.state = SceneMotionState(image.timestamp_ns, pixels, masks, ego.motion, normal)
         return _result(image.timestamp_ns, before.timestamp_ns, masks=masks, ego=ego, evidence=evidence, ground=ground)
 
-    def _first(self, image: Image, grey: npt.NDArray[np.uint8], segmented: Instances) -> SceneMotionResult:
+    def _first(self, image: Image, pixels: Pixels, segmented: Instances) -> SceneMotionResult:
         reason = "first image" if self.state is None else "image of another size than the one before"
-        masks = CarriedMasks(np.zeros(grey.shape, np.uint32), (), 0) if segmented.skipped else _fresh(segmented)
-        self.state = SceneMotionState(image.timestamp_ns, grey, masks, None, None)
+        masks = CarriedMasks(np.zeros(pixels.shape[:2], np.uint32), (), 0) if segmented.skipped else _fresh(segmented)
+        self.state = SceneMotionState(image.timestamp_ns, pixels, masks, None, None)
         ego = EgoMotionEstimate(None, reason)
         evidence = {instance.instance_id: NO_EVIDENCE for instance in masks.instances}
         return _result(image.timestamp_ns, image.timestamp_ns, masks=masks, ego=ego, evidence=evidence, ground=None)

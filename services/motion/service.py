@@ -8,9 +8,9 @@ import cv2
 from schemas import topics
 from schemas.topics import Topic
 from services.motion.ego_motion import EgoMotionOptions
+from services.motion.flow.options import OpticalFlowOptions
 from services.motion.instance_motion import InstanceMotionOptions
 from services.motion.motion_refinement import DirectionPrior
-from services.motion.optical_flow import OpticalFlowOptions
 from services.motion.scene_motion import SceneMotion, SceneMotionOptions
 from services.motion.standing_flow import StandingFlowOptions
 from services.motion.state_arrays import arrays_of_state, state_of_arrays
@@ -27,7 +27,16 @@ NAME = "motion"
 def scene_motion_options(settings: MotionConfig) -> SceneMotionOptions:
     """The options of every step, from the configuration's section."""
     return SceneMotionOptions(
-        flow=OpticalFlowOptions(settings.flow_preset, settings.flow_width_px, settings.flow_finest_level),
+        flow=OpticalFlowOptions(
+            settings.flow_preset,
+            settings.flow_width_px,
+            settings.flow_finest_level,
+            settings.flow,
+            settings.flow_weights,
+            settings.flow_iterations,
+            settings.device,
+            settings.threads,
+        ),
         ego=EgoMotionOptions(
             seed=settings.seed,
             standing_parallax_px=settings.standing_parallax_px,

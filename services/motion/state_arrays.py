@@ -18,7 +18,7 @@ def arrays_of_state(state: SceneMotionState) -> Arrays:
     motion = state.motion
     return {
         "timestamp_ns": np.array(state.timestamp_ns, np.int64),
-        "grey": state.grey,
+        "pixels": state.pixels,
         "labels": state.masks.labels,
         "age_frames": np.array(state.masks.age_frames, np.int64),
         "instance_id": np.array([instance.instance_id for instance in instances], np.int64),
@@ -49,7 +49,7 @@ def state_of_arrays(arrays: Arrays) -> SceneMotionState:
     normal = np.asarray(arrays["ground_normal"], np.float64)
     return SceneMotionState(
         timestamp_ns=int(np.asarray(arrays["timestamp_ns"])),
-        grey=np.asarray(arrays["grey"], np.uint8),
+        pixels=np.asarray(arrays["pixels"], np.uint8),
         masks=masks,
         motion=CameraMotion(rotation, np.asarray(arrays["translation"], np.float64)) if rotation.size else None,
         ground_normal=normal if normal.size else None,

@@ -27,12 +27,12 @@ def configured_network(settings: SegmenterConfig, chosen: InstanceFilter) -> Net
         import torch
     except ImportError:
         raise ResourceError("segmenter.backend solov2 needs torch: pip install kinemap[segmenter]") from None
+    from services.runtime.torch_device import torch_device
     from services.segmenter.agreement import LEAST_KEPT
     from services.segmenter.fastest import fastest
     from services.segmenter.network_runs import NetworkRuns
     from services.segmenter.runtimes.way import asked_ways, versions
     from services.segmenter.solov2.folding import folded
-    from services.segmenter.torch_device import torch_device
     from services.segmenter.weights.model_file import load_network
 
     torch.set_num_threads(settings.threads)

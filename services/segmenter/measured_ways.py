@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from services.segmenter.weights.cache_folder import cache_folder
-from services.segmenter.weights.checksum import sha256_of
+from services.weights.cache_folder import cache_folder
+from services.weights.checksum import sha256_of
 
 SAME_IOU: Final = 0.98
 """of every mask with the exact way's, where a way finds the same"""

@@ -90,8 +90,8 @@ def segmenter(
     import torch
 
     from services.cli.train.segmenter_validation import Validation
+    from services.runtime.torch_device import torch_device
     from services.segmenter.solov2.variants import VARIANTS
-    from services.segmenter.torch_device import torch_device
     from services.segmenter.training.trainer import Precision, Trainer, TrainingOptions
     from services.segmenter.weights.imagenet_backbone import read_backbone
 

@@ -11,12 +11,22 @@ class MotionConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
+    flow: Literal["dis", "raft"] = Field(
+        "dis", description="dense flow: dis, OpenCV's (CPU); raft, a network with public weights (`kinemap weights`)"
+    )
+    flow_weights: str | None = Field(
+        None,
+        min_length=1,
+        description="raft: a .pth file, or a name of `kinemap weights`; when not given, the fastest that was pulled",
+    )
+    flow_iterations: int = Field(12, ge=1, le=64, description="raft: corrections of the flow")
+    device: str = Field("auto", description="raft: cpu, cuda, or auto: cuda where there is one")
     flow_preset: Literal["ultrafast", "fast", "medium"] = Field("fast", description="OpenCV's presets of DIS flow")
     flow_width_px: int = Field(
         800, ge=64, description="wider images are halved until they are no wider, before flow is computed"
     )
     flow_finest_level: int = Field(1, ge=0, le=4, description="finest level of DIS' pyramid; 0 is the image itself")
-    threads: int = Field(1, ge=1, description="threads of OpenCV")
+    threads: int = Field(1, ge=1, description="threads of OpenCV and torch")
     seed: int = Field(20, ge=0, description="of the essential matrix's random samples")
     standing_parallax_px: float = Field(
         0.35, gt=0, description="background displacement left after rotation below which the camera is said to stand"

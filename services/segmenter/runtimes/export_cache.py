@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from services.segmenter.weights.cache_folder import cache_folder
+from services.weights.cache_folder import cache_folder
 
 _MEMBER: Final = "network.onnx"
 _SUFFIX: Final = ".zip"

@@ -7,8 +7,8 @@ from typing import Final
 
 from services.runtime.errors import InputError
 from services.segmenter.solov2.variants import VARIANTS
-from services.segmenter.weights.cache_folder import MODEL_SUFFIX, cache_folder, cached_model_path
 from services.segmenter.weights.catalogue import PUBLIC_MODELS, public_model
+from services.weights.cache_folder import MODEL_SUFFIX, cache_folder, cached_model_path
 
 SHIPPED_WEIGHTS: Final = Path(__file__).parent / f"default{MODEL_SUFFIX}"
 """The weights that come with this package."""

@@ -13,7 +13,7 @@ from services.runtime.errors import InputError
 from services.segmenter.solov2.backbones import BACKBONES
 from services.segmenter.solov2.efficientnet_lite import EfficientNetLite
 from services.segmenter.solov2.preprocessing import MEAN_RGB, STD_RGB
-from services.segmenter.weights.torch_file import load_torch_file
+from services.weights.torch_file import load_torch_file
 
 _CLASSIFIER: Final = re.compile(r"(fc|_fc|_conv_head|_bn1)\.")
 _BLOCK_PARTS: Final = (

@@ -11,7 +11,7 @@ from schemas.categories import CATEGORY_NAMES
 from services.runtime.errors import InputError
 from services.segmenter.networks import NAMES, build, input_box
 from services.segmenter.weights.model_file import ModelDescription
-from services.segmenter.weights.torch_file import load_torch_file
+from services.weights.torch_file import load_torch_file
 
 _CATEGORY_WEIGHTS = ("mask_head.conv_cls.weight", "roi_head.mask_head.conv_logits.weight")
 """of SOLOv2 and of Mask R-CNN: one row a category"""

@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from services.runtime.errors import InputError
-from services.segmenter.weights.cache_folder import MODEL_SUFFIX, cache_folder, cached_model_path
 from services.segmenter.weights.catalogue import PUBLIC_MODELS, PublicModel, sha256_prefix_of
-from services.segmenter.weights.checksum import require_sha256_prefix
-from services.segmenter.weights.download import Progress, download
 from services.segmenter.weights.model_file import load_network, read_description, save_model
 from services.segmenter.weights.public_checkpoint import read_checkpoint
+from services.weights.cache_folder import MODEL_SUFFIX, cache_folder, cached_model_path
+from services.weights.checksum import require_sha256_prefix
+from services.weights.download import Progress, download
 
 
 def pull(model: PublicModel, progress: Progress | None = None) -> Path:

@@ -5,7 +5,8 @@ import cv2
 import numpy as np
 import pytest
 
-from services.motion.optical_flow import DenseFlow, OpticalFlowOptions
+from services.motion.flow.dense_flow import DenseFlow
+from services.motion.flow.options import OpticalFlowOptions
 from services.runtime.errors import InputError
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from services.runtime.errors import InputError, ResourceError
-from services.segmenter.weights.download import download
+from services.weights.download import download
 
 CONTENT = bytes(range(256)) * 2000
 SHA256 = hashlib.sha256(CONTENT).hexdigest()

@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 from urllib.request import Request, build_opener
 
 from services.runtime.errors import InputError, ResourceError
-from services.segmenter.weights.checksum import require_sha256_prefix
+from services.weights.checksum import require_sha256_prefix
 
 _TIMEOUT_S = 30
 _CHUNK = 1 << 16
