@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from services.segmenter.weights import choice
 from tests.command_line import Ended, run_kinemap
 
 
@@ -21,3 +22,10 @@ def kinemap(
         return run_kinemap(monkeypatch, capsys, *arguments)
 
     return run
+
+
+@pytest.fixture
+def without_network(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Neither a public model in the cache nor the shipped weights."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(choice, "SHIPPED_WEIGHTS", tmp_path / "none.safetensors")

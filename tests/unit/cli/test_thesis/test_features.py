@@ -115,6 +115,7 @@ def test_bad_input_is_one_line(
     kinemap("thesis", "features", *arguments, "--out", "out").is_one_line(*parts)
 
 
+@pytest.mark.usefixtures("without_network")
 def test_a_sequence_without_masks_is_refused(kinemap: Any, tmp_path: Path) -> None:
     folder = tmp_path / "kitti" / "sequences" / "05"
     _sequence(folder, moving=None)

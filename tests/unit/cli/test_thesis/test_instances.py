@@ -82,6 +82,7 @@ def test_whatever_is_a_backend_is_scored_and_timed(data: Path) -> None:
     assert score.seconds > 0.0
 
 
+@pytest.mark.usefixtures("without_network")
 @pytest.mark.parametrize(
     ("arguments", "parts"),
     [

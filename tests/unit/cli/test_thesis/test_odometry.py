@@ -144,6 +144,7 @@ def test_beside_a_part_of_a_sequence_nothing_published_stands(play: Play, tmp_pa
     assert f"The first {FRAMES} frames alone" in text
 
 
+@pytest.mark.usefixtures("without_network")
 @pytest.mark.parametrize(
     ("arguments", "parts"),
     [
