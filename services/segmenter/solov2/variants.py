@@ -59,7 +59,7 @@ def _compact() -> Variant:
         128,
         64,
         _LIGHT_RANGES,
-        (852, 448),
+        (1056, 544),
         pyramid_channels=96,
         branch_channels=64,
         least_area=0.25,

@@ -15,9 +15,9 @@ from services.segmenter.training.sample import Sample
 class CopyPaste:
     """Pastes some instances of another sample; what they cover of older instances is no longer theirs."""
 
-    share: float = 0.5
+    share: float = 0.8
     """of the samples that get something pasted"""
-    most_instances: int = 4
+    most_instances: int = 8
     scales: tuple[float, float] = (0.5, 1.6)
     least_visible: float = 0.2
     """of an older instance's pixels; one of which less is left is left out"""
